@@ -21,22 +21,25 @@ class CrossingList {
       return;
     ray_ = prepared_.exact();
     AlongRay(scene_, prepared_, *this);
-    std::sort(
-        found_.begin(), found_.end(), [](const Found& a, const Found& b) { return a.id < b.id; });
+    std::sort(found_.begin(), found_.end(), [](const CrossedTriangle& a, const CrossedTriangle& b) {
+      return a.id < b.id;
+    });
     // a triangle may stand in several cells
-    const auto same = [](const Found& a, const Found& b) { return a.id == b.id; };
+    const auto same = [](const CrossedTriangle& a, const CrossedTriangle& b) {
+      return a.id == b.id;
+    };
     found_.erase(std::unique(found_.begin(), found_.end(), same), found_.end());
-    leave_out();
+    apply_filter();
   }
 
-  /// For AlongRay. A ray that starts inside a ball comes to it.
+  /// For AlongRay. A ray that starts inside a sphere comes to it.
   void primitive(std::uint32_t id) {
     const PrimitiveIds& ids = scene_.geometry.ids;
     if (!ids.has(PrimitiveKind::kSphere, id))
       return;
-    const auto ball =
+    const auto sphere =
         primitive_at<Sphere>(scene_.geometry.of<Sphere>(), id - ids.begin(PrimitiveKind::kSphere));
-    in_ball_ = in_ball_ || is_within(ray_.org, ball.center, ball.radius);
+    in_sphere_ = in_sphere_ || is_within(ray_.org, sphere.center, sphere.radius);
   }
   void block(const TriangleBlock& block) {
     for (int i = 0; i < kBlock && block.id[i] != kNoPrimitive; ++i)
@@ -44,23 +47,24 @@ class CrossingList {
   }
 
   std::size_t count() const { return found_.size(); }
-  /// True if the ray starts inside a ball.
-  bool starts_in_ball() const { return in_ball_; }
+  /// True if the ray starts inside a sphere.
+  bool starts_in_sphere() const { return in_sphere_; }
 
   /// In the order in which the ray crosses them.
   std::vector<Crossing> in_order() {
-    std::stable_sort(found_.begin(), found_.end(), [this](const Found& a, const Found& b) {
-      return is_before(a, b);
-    });
+    std::stable_sort(
+        found_.begin(), found_.end(), [this](const CrossedTriangle& a, const CrossedTriangle& b) {
+          return is_before(a, b);
+        });
     std::vector<Crossing> crossings;
-    for (const Found& f : found_)
+    for (const CrossedTriangle& f : found_)
       crossings.push_back(
           {scalar::strictly_between(t_of(f), given_.t_min, given_.t_max), f.id, enters(f)});
     return crossings;
   }
 
  private:
-  struct Found {
+  struct CrossedTriangle {
     std::uint32_t id;
     Triangle::Fields<float> triangle;
     double lo, hi;  ///< t lies between, in multiples of the prepared ray's unit
@@ -78,15 +82,17 @@ class CrossingList {
   }
 
   /// Replaces originals by themselves and their copies, as far as these pass.
-  void leave_out() {
-    std::vector<Found> all;
-    const auto add = [&](Found f, std::uint32_t id) {
+  void apply_filter() {
+    if (scene_.copies.count == 0 && filter_.skip == kNoPrimitive && filter_.masks.empty())
+      return;
+    std::vector<CrossedTriangle> all;
+    const auto add = [&](CrossedTriangle f, std::uint32_t id) {
       f.id = id;
       if (passes(filter_, id))
         all.push_back(f);
     };
     const CopyTable& copies = scene_.copies;
-    for (const Found& f : found_) {
+    for (const CrossedTriangle& f : found_) {
       add(f, f.id);
       for (std::uint32_t i = copies.begin(f.id); copies.has(i, f.id); ++i)
         add(f, copies.pair[i].copy);
@@ -94,21 +100,21 @@ class CrossingList {
     found_ = std::move(all);
   }
 
-  bool is_before(const Found& a, const Found& b) const {
+  bool is_before(const CrossedTriangle& a, const CrossedTriangle& b) const {
     if (a.hi < b.lo || b.hi < a.lo)
       return a.hi < b.lo;
     const int order = order_beside(ray_, a.triangle.corner, b.triangle.corner);
     return order != 0 ? order < 0 : a.id < b.id;
   }
 
-  float t_of(const Found& f) const {
+  float t_of(const CrossedTriangle& f) const {
     const ExactRay ray = prepared_.given(ray_);
     float t = 0;
     if (!scalar::round_plane_t(ray, f.triangle.corner, t))
       t = cross_plane_of(ray, f.triangle.corner).rounded() + 0.f;  // no zero is -0
     return t;
   }
-  bool enters(const Found& f) const { return crosses_front(ray_, f.triangle.corner); }
+  bool enters(const CrossedTriangle& f) const { return crosses_front(ray_, f.triangle.corner); }
 
   static constexpr double kNoEnd = std::numeric_limits<double>::infinity();
 
@@ -117,8 +123,8 @@ class CrossingList {
   Ray given_;
   PreparedRay prepared_;
   ExactRay ray_{};
-  std::vector<Found> found_;
-  bool in_ball_ = false;
+  std::vector<CrossedTriangle> found_;
+  bool in_sphere_ = false;
 };
 
 }  // namespace
@@ -163,7 +169,7 @@ bool contains(const World& world, Float3 point) {
   constexpr Float3 kDirection{.4375f, .8125f, .3125f};
   const Filter all;
   const CrossingList found(world, {point, kDirection}, all);
-  return found.starts_in_ball() || found.count() % 2 == 1;
+  return found.starts_in_sphere() || found.count() % 2 == 1;
 }
 
 void contains(const World& world,

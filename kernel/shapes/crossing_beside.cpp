@@ -58,11 +58,11 @@ namespace {
 
 /// The plane of a triangle beside a ray: t = along / across at the ray, and by a step along an axis
 /// it changes by -normal / across.
-struct PlaneBeside {
+struct TrianglePlane {
   ExactVector normal;
   Expansion along, across;
 
-  PlaneBeside(const ExactRay& ray, const float (&corner)[3][3]) {
+  TrianglePlane(const ExactRay& ray, const float (&corner)[3][3]) {
     const auto edge = [&](int i) { return difference(corner[i], corner[0]); };
     normal = cross(edge(1), edge(2));
     across = dot(normal, ray.dir);
@@ -78,8 +78,8 @@ int compare(const Expansion& a, const Expansion& b, const Expansion& c, const Ex
 }  // namespace
 
 int order_beside(const ExactRay& ray, const float (&corner)[3][3], const float (&other)[3][3]) {
-  const PlaneBeside a(ray, corner);
-  const PlaneBeside b(ray, other);
+  const TrianglePlane a(ray, corner);
+  const TrianglePlane b(ray, other);
   if (const int order = compare(a.along, a.across, b.along, b.across); order != 0)
     return order;
   const Expansion* const of_a[3] = {&a.normal.x, &a.normal.y, &a.normal.z};
@@ -92,12 +92,12 @@ int order_beside(const ExactRay& ray, const float (&corner)[3][3], const float (
 }
 
 ExactCrossing cross_plane_of(const ExactRay& ray, const float (&corner)[3][3]) {
-  const PlaneBeside plane(ray, corner);
+  const TrianglePlane plane(ray, corner);
   return {plane.along, plane.across};
 }
 
 bool crosses_front(const ExactRay& ray, const float (&corner)[3][3]) {
-  return PlaneBeside(ray, corner).across.sign() < 0;
+  return TrianglePlane(ray, corner).across.sign() < 0;
 }
 
 }  // namespace grelha

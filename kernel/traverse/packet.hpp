@@ -12,7 +12,7 @@ namespace grelha::GRELHA_ISA {
 
 /// Most rays in a packet. A word has a bit for each group of lanes.
 inline constexpr int kPacket = kWidth<VFloat> == 1 ? 64 : 256;
-inline constexpr int kKeptFields = 9;  ///< those of a triangle; see kKept
+inline constexpr int kMostFields = 9;  ///< those of a triangle; see kKeepsFields
 inline constexpr float kInfinity = __builtin_inff();
 inline constexpr float kGreatest = 0x1.fffffep127f;
 
@@ -56,17 +56,17 @@ class FrustumStats {
 
 /// Tells whether rays that pass a block's box are worth counting: not where most times they were
 /// too many to be tested one by one.
-class RayLuck {
+class SingleRayStats {
  public:
-  bool should_try() { return luck_ > 0 || ++left_out_ % 16 == 0; }
+  bool should_try() { return sum_ > 0 || ++left_out_ % 16 == 0; }
   void record(bool were_few) {
-    luck_ += were_few ? 1 : -1;
-    luck_ = luck_ > kMost ? kMost : luck_ < -kMost ? -kMost : luck_;
+    sum_ += were_few ? 1 : -1;
+    sum_ = sum_ > kMost ? kMost : sum_ < -kMost ? -kMost : sum_;
   }
 
  private:
   static constexpr int kMost = 8;
-  int luck_ = 1;
+  int sum_ = 1;
   unsigned left_out_ = 0;
 };
 
@@ -106,12 +106,12 @@ struct Packet {
   alignas(64) float inverse[3][kPacket];  ///< of directions, no component 0
   /// the side of a box that the ray hits first, along each axis
   alignas(64) std::uint32_t near[3][kPacket];
-  /// Fields of the primitive that a ray hits, as for_each_field() has them, where met_id is its id
-  alignas(64) float met[kKeptFields][kPacket];
-  alignas(64) float met_id[kPacket];
+  /// Fields of the primitive that a ray hits, as for_each_field() has them, if this is hit_field_id
+  alignas(64) float hit_field[kMostFields][kPacket];
+  alignas(64) float hit_field_id[kPacket];
   const GeometryView* geometry = nullptr;
   FrustumStats small_stats, middle_stats, large_stats;  ///< of packets of up to 16, 64 and 256
-  RayLuck ray_luck;
+  SingleRayStats single_ray_stats;
 };
 
 inline std::uint32_t id_of(float bits) {
@@ -249,16 +249,17 @@ inline void keep_ends(Packet& p) {
 
 /// Kinds whose fields a packet keeps of what its rays hit: those of few fields.
 template <class Shape>
-inline constexpr bool kKept = Shape::kFinite && sizeof(typename Shape::template Fields<float>) <=
-                                                    sizeof(float) * kKeptFields;
+inline constexpr bool kKeepsFields = Shape::kFinite &&
+                                     sizeof(typename Shape::template Fields<float>) <=
+                                         sizeof(float) * kMostFields;
 
 /// Keeps the fields of the primitive that a ray hits: t is rounded from them, and need not fetch
 /// them from the caller's arrays.
 template <class Shape>
-inline void keep_met(Packet& p, int i, const typename Shape::template Fields<float>& met) {
+inline void keep_hit_fields(Packet& p, int i, const typename Shape::template Fields<float>& met) {
   int row = 0;
-  Shape::for_each_field([&](const float& x) { p.met[row++][i] = x; }, met);
-  p.met_id[i] = p.id[i];
+  Shape::for_each_field([&](const float& x) { p.hit_field[row++][i] = x; }, met);
+  p.hit_field_id[i] = p.id[i];
 }
 
 /// Sets `inverse` and `near` of the rays from i on, for tests of boxes.

@@ -49,7 +49,7 @@ inline void prepare(Packet& p, const GeometryView& geometry, bool any_triangles)
     const int i = g * w;
     p.ahead.prefetch_row(i);
     store(p.id + i, VFloat(bits_of(kNoPrimitive)));
-    store(p.met_id + i, VFloat(bits_of(kNoPrimitive)));
+    store(p.hit_field_id + i, VFloat(bits_of(kNoPrimitive)));
     check_rays(p, i);
     store(p.low + i, load<VFloat>(p.best + i));
     if (any_triangles)
@@ -127,15 +127,17 @@ inline void record(Packet& p,
   store(p.best + i, select(closer, kAny ? over : found.hi, best));
   store(p.low + i, select(closer, kAny ? over : found.lo, low));
   store(p.id + i, select(closer, VFloat(bits_of(id)), load<VFloat>(p.id + i)));
-  if constexpr (!kAny && kKept<Shape>) {
+  if constexpr (!kAny && kKeepsFields<Shape>) {
     int row = 0;
     Shape::for_each_field(
         [&](const float& x) __attribute__((always_inline)) {
-          store(p.met[row] + i, select(closer, VFloat(x), load<VFloat>(p.met[row] + i)));
+          store(p.hit_field[row] + i,
+                select(closer, VFloat(x), load<VFloat>(p.hit_field[row] + i)));
           ++row;
         },
         met);
-    store(p.met_id + i, select(closer, VFloat(bits_of(id)), load<VFloat>(p.met_id + i)));
+    store(p.hit_field_id + i,
+          select(closer, VFloat(bits_of(id)), load<VFloat>(p.hit_field_id + i)));
   }
   const unsigned other = bits_where(ids_at(p, i) != id);
   each_bit(bits(and_not(candidate, closer)) & other,

@@ -138,7 +138,7 @@ inline int most_cells(int width) {
 /// ray, which costs more where a hit is more than an end; and rays that are always so tested.
 template <bool kAny>
 inline constexpr int kRayTest = kAny ? 2 : 4;
-inline constexpr int kRaysForGranted = 3;
+inline constexpr int kLeastSingleRays = 3;
 
 /// The rays of a packet that go through a grid together.
 template <bool kAny>
@@ -214,7 +214,7 @@ class PacketVisit {
     const std::uint64_t near = f_.by_group ? p_.live & groups_near_box(f_, boxes, k) : p_.live;
     unsigned lanes[kGroups];
     int rays = 0;
-    int tests = kRayTest<true> * kRaysForGranted;
+    int tests = kRayTest<true> * kLeastSingleRays;
     for (std::uint64_t left = near; left != 0; left &= left - 1) {
       const int g = __builtin_ctzll(left);
       lanes[g] = rays_through(p_, g * kWidth<VFloat>, boxes, k);
@@ -241,9 +241,9 @@ class PacketVisit {
     for (int i = 0; i < kBlock; i += kWidth<Block>)
       inside |= overlapping(f_, block, i) << i;
     const int triangles = __builtin_popcount(inside);
-    if (kAny && triangles > 1 && p_.ray_luck.should_try()) {
+    if (kAny && triangles > 1 && p_.single_ray_stats.should_try()) {
       const bool by_rays = test_rays(boxes, k, block, triangles);
-      p_.ray_luck.record(by_rays);
+      p_.single_ray_stats.record(by_rays);
       if (by_rays)
         return;
     }

@@ -13,14 +13,14 @@ class PairTests {
  public:
   PairTests(const GridView& g, Packet& p) : blocks_(g.lists.template of<Triangle>().blocks), p_(p) {
     if (g.lists.template of<Triangle>().first && !p.base)
-      each_live_group(p, [&](int i, int) { see_rays(g, i); });
+      each_live_group(p, [&](int i, int) { set_sheared_rays(g, i); });
   }
 
   /// Lists the triangles of a block that a ray is not sure to miss.
   [[gnu::always_inline]] void add(std::uint32_t ray, std::uint32_t block) {
     for (int i = 0; i < kBlock; i += kWidth<Block>) {
       const CompressMask selected(p_.base ? crossed_in_frame(ray, blocks_[block], i)
-                                          : crossed(seen_[ray], blocks_[block], i));
+                                          : crossed(sheared_[ray], blocks_[block], i));
       store_words(ray_ + count_, Words<Block>{} + ray);
       selected.store(triangle_ + count_,
                      counted_words<Block>(block * kBlock + static_cast<unsigned>(i)));
@@ -33,7 +33,7 @@ class PairTests {
   /// Tests the listed pairs.
   [[gnu::noinline]] void test() {
     for (int first = 0; first < count_; first += kWidth<Block>)
-      test_together(first, count_ - first < kWidth<Block> ? count_ - first : kWidth<Block>);
+      test_pairs(first, count_ - first < kWidth<Block> ? count_ - first : kWidth<Block>);
     count_ = 0;
   }
 
@@ -41,7 +41,7 @@ class PairTests {
   static constexpr int kMost = 512;
 
   /// A ray as the filter sees it: in the order of its axes.
-  struct SeenRay {
+  struct ShearedRay {
     float org[3], shear[2];
     float error;             ///< of an edge function, over the largest sheared coordinate
     std::uint32_t place[3];  ///< of coordinates in a block
@@ -49,7 +49,7 @@ class PairTests {
 
   /// S + Z of bound_triangle() is at most three times the farthest distance along an axis, and S
   /// the largest sheared coordinate: kEdgeError u S (S + Z) is at most 97 u S times that distance.
-  [[gnu::always_inline]] void see_rays(const GridView& g, int i) {
+  [[gnu::always_inline]] void set_sheared_rays(const GridView& g, int i) {
     constexpr float kError = 97 * 0x1p-24f;
     static_assert(kError > 3 * kEdgeError * 0x1p-24);
     VFloat far(0);
@@ -60,7 +60,7 @@ class PairTests {
     alignas(64) float error[kWidth<VFloat>];
     store(error, far * VFloat(kError));
     for (int r = i; r < i + kWidth<VFloat>; ++r) {
-      SeenRay& to = seen_[r];
+      ShearedRay& to = sheared_[r];
       const int k = static_cast<int>(p_.axis[r]);
       const int axis[3] = {kNextAxis[k], kPreviousAxis[k], k};
       for (int a = 0; a < 3; ++a) {
@@ -74,7 +74,7 @@ class PairTests {
   }
 
   /// Bits of triangles of a block, from i on, that a ray is not sure to miss.
-  [[gnu::always_inline]] static unsigned crossed(const SeenRay& r,
+  [[gnu::always_inline]] static unsigned crossed(const ShearedRay& r,
                                                  const TriangleBlock& block,
                                                  int i) {
     const auto sheared = [&](const float(&v)[3][kBlock], Block& x, Block& y)
@@ -162,7 +162,7 @@ class PairTests {
   }
 
   /// Tests `some` pairs from `first` on.
-  [[gnu::always_inline]] void test_together(int first, int some) {
+  [[gnu::always_inline]] void test_pairs(int first, int some) {
     Pairs pairs;
     const PairSource source{this, &pairs, first, first + some - 1};
     for (int j = 0; j < kWidth<Block>; ++j)
@@ -189,13 +189,13 @@ class PairTests {
     if (take_hit<kAny>(r, t, id))
       set_hit(r, {-kInfinity, -kInfinity}, id_of(r));
     else if (!kAny && id_of(r) == id)
-      keep_met<Triangle>(p_, r.i, triangle(pair));
+      keep_hit_fields<Triangle>(p_, r.i, triangle(pair));
   }
 
   const TriangleBlock* blocks_;
   Packet& p_;
   int count_ = 0;
-  SeenRay seen_[kPacket];
+  ShearedRay sheared_[kPacket];
   alignas(64) std::uint32_t ray_[kMost + 2 * kBlock];
   alignas(64) std::uint32_t triangle_[kMost + 2 * kBlock];
 };

@@ -25,14 +25,15 @@ template <class Shape>
 
 /// The same of the rays from i on: what their packet kept, where it kept all.
 template <class Shape>
-[[gnu::always_inline]] inline typename Shape::template Fields<VFloat> fields_met(
+[[gnu::always_inline]] inline typename Shape::template Fields<VFloat> hit_fields(
     const Packet& p, int i, unsigned lanes, const typename Shape::Arrays& all, const VUint& index) {
-  if constexpr (kKept<Shape>) {
-    const VUint met = load_words<VFloat>(reinterpret_cast<const std::uint32_t*>(p.met_id + i));
+  if constexpr (kKeepsFields<Shape>) {
+    const VUint met =
+        load_words<VFloat>(reinterpret_cast<const std::uint32_t*>(p.hit_field_id + i));
     if ((lanes & ~bits_where(met == ids_at(p, i))) == 0) [[likely]] {
       typename Shape::template Fields<VFloat> to;
       int row = 0;
-      Shape::for_each_field([&](VFloat& x) { x = load<VFloat>(p.met[row++] + i); }, to);
+      Shape::for_each_field([&](VFloat& x) { x = load<VFloat>(p.hit_field[row++] + i); }, to);
       return to;
     }
   }
@@ -96,7 +97,7 @@ inline void round_hits(const Packet& p, int i, float* t) {
     const VUint index(here ? id - first : VUint{});
     VDouble lo[kWideParts<VFloat>], hi[kWideParts<VFloat>];
     hit_spans<Shape>(
-        p, i, simd_rays(p, i), fields_met<Shape>(p, i, lanes, g.of<Shape>(), index), lo, hi);
+        p, i, simd_rays(p, i), hit_fields<Shape>(p, i, lanes, g.of<Shape>(), index), lo, hi);
     if (p.has_units) [[unlikely]]
       for (int k = 0; k < kWideParts<VFloat>; ++k) {
         const auto unit = take<VDouble>(p.unit + i + k * kWidth<VDouble>);

@@ -170,7 +170,7 @@ template <bool kAny, class Ray>
   } else if (!kAny && id_of(r) != before) {
     for (int k = 0; k < kBlock; ++k)
       if (block.id[k] == id_of(r))
-        keep_met<Triangle>(r.p, r.i, triangle_of(block, k));
+        keep_hit_fields<Triangle>(r.p, r.i, triangle_of(block, k));
   }
   return false;
 }
@@ -201,11 +201,11 @@ template <bool kAny, class Shape, class Ray>
   const auto row = side_by_side<Shape, Block>(list.fields, i);
   const std::uint32_t before = id_of(r);
   const bool over = record<kAny>(r, intersect<Shape>(ray, row, Block(best_of(r))), list.id + i);
-  if constexpr (!kAny && std::is_same_v<Ray, PacketRay> && kKept<Shape>)
+  if constexpr (!kAny && std::is_same_v<Ray, PacketRay> && kKeepsFields<Shape>)
     if (id_of(r) != before)
       for (std::uint32_t k = i; k < i + kWidth<Block>; ++k)
         if (list.id[k] == id_of(r))
-          keep_met<Shape>(r.p, r.i, one_of<Shape>(list.fields, k));
+          keep_hit_fields<Shape>(r.p, r.i, one_of<Shape>(list.fields, k));
   return over;
 }
 

@@ -52,15 +52,15 @@ class Copy:
 
     def __init__(self, tree, folder, isa, build):
         self.tree, self.folder, self.isa = tree, folder, isa
-        self.library = folder / "kernel.so"
+        self.shared_object = folder / "kernel.so"
         self.compiler, self.flags = compiler(build)
         self.flags = [f"-I{tree}/include", f"-I{tree}", *FLAGS, *self.flags]
         self.told = f"{tree} {isa} {' '.join(self.compiler + self.flags)}\n"
 
     def fresh(self):
         how = self.folder / "how"
-        return (self.library.exists() and how.exists() and how.read_text() == self.told and
-                self.library.stat().st_mtime >
+        return (self.shared_object.exists() and how.exists() and how.read_text() == self.told and
+                self.shared_object.stat().st_mtime >
                 newest(self.tree / "kernel", self.tree / "include", HERE))
 
     def prepare(self):
@@ -89,7 +89,7 @@ class Copy:
 
     def link(self):
         self.call([self.compiler[-1], "-shared", "-fopenmp", "-Wl,-Bsymbolic", "-Wl,-z,defs",
-                   f"-Wl,--version-script={self.folder}/exported.map", "-o", self.library,
+                   f"-Wl,--version-script={self.folder}/exported.map", "-o", self.shared_object,
                    *sorted(self.folder.glob("*.o"))])
         (self.folder / "how").write_text(self.told)
 
@@ -120,7 +120,7 @@ def build_copies(trees, folder, isa, build):
     for c in stale:
         c.link()
     if len(copies) == 2:
-        return [c.library for c in copies]
-    double = copies[0].library.with_name("double.so")  # by one name it would be loaded once
-    shutil.copy(copies[0].library, double)
-    return [double, copies[0].library]
+        return [c.shared_object for c in copies]
+    double = copies[0].shared_object.with_name("double.so")  # by one name it would be loaded once
+    shutil.copy(copies[0].shared_object, double)
+    return [double, copies[0].shared_object]
