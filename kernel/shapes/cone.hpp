@@ -39,10 +39,22 @@ inline unsigned overlapping(const Frustum& f, const FieldArrays<Cone>& cones, st
   });
 }
 
-/// Groups of rays in a frustum that may hit a cone: all, it is not held against each.
+/// Groups of rays in a frustum that may hit a cone.
 template <class Frustum>
-inline std::uint64_t groups_near(const Frustum&, const Cone::Fields<float>&) {
-  return ~std::uint64_t{0};
+inline std::uint64_t groups_near(const Frustum& f, const Cone::Fields<float>& cone) {
+  const float apex_radius = cone.radius + cone.slope * cone.height;
+  const float apex_along = cone.base[f.k] + cone.height * cone.axis[f.k];
+  return f.groups_inside([&](int j, int first) {
+    const int side = f.side(j);
+    const float apex_across = cone.base[side] + cone.height * cone.axis[side];
+    const VFloat slope = load<VFloat>(f.group_b[j] + first);
+    const VFloat gradient_length = load<VFloat>(f.group_gradient_length[j] + first);
+    const VFloat base = (VFloat(f.a[j] * cone.base[side]) + slope * VFloat(cone.base[f.k])) +
+                        gradient_length * VFloat(cone.radius);
+    const VFloat apex = (VFloat(f.a[j] * apex_across) + slope * VFloat(apex_along)) +
+                        gradient_length * VFloat(apex_radius);
+    return max(base, apex) + load<VFloat>(f.group_c[j] + first);
+  });
 }
 
 /// Steeper slopes: points are positioned by their radius.

@@ -7,28 +7,65 @@
 
 namespace grelha::GRELHA_ISA {
 
-/// Test for lines that surely pass a cone by. aside is off by k = 8 u |to_base| / |dir|, however
-/// small the sine between ray and axis, and by 4 times the error of coordinates: (w + k)^2 <= 9/8
-/// w^2 + 9 k^2.
+// Bounds of floats for lines that surely pass a cone by; docs/numerics.md derives them.
+
+/// Times the square of the wider radius.
 inline constexpr float kWider = 1.125f;
-inline constexpr float kSineError = 0x1p-37f;
+/// Times the square of all that is around a cone: its distance, its size, the error of coordinates
+/// in u.
+inline constexpr float kPassError = 0x1p-36f;
+/// Times the same: of heights.
+inline constexpr float kPassHeight = 0x1p-18f;
+/// Lines nearer to the axis' direction are in a cylinder for longer than floats can tell.
+inline constexpr float kLeastSine = 0x1p-30f;
 /// Squares of wider radii below which products of floats may underflow.
 inline constexpr float kLeastWidth = 0x1p-100f;
 
-/// Lanes whose line does not surely pass a cone's axis further away than its wider radius: most do.
+template <class Real>
+[[gnu::always_inline]] inline Real sum_of_sizes(const Vec3<Real>& a) {
+  return (magnitude(a.x) + magnitude(a.y)) + magnitude(a.z);
+}
+
+/// A line beside the cylinder around a cone.
+template <class Real>
+struct ConePass {
+  Mask<Real> may_cross;  ///< not surely outside of the cylinder: most lines are
+  Mask<Real> is_steep;   ///< the next two tell where the line surely is outside
+  Real enter, leave;
+
+  [[gnu::always_inline]] ConePass(const SimdRays<Real>& ray, const Cone::Fields<Real>& cone) {
+    const Vec3<Real> axis = vec(cone.axis);
+    const Vec3<Real> to_base = ray.to(vec(cone.base));
+    const Real wide = cone.radius + cone.slope * cone.height;
+    const Real size =
+        (sum_of_sizes(to_base) + (cone.height + wide)) + Real(0x1p23f) * ray.frame_error;
+    const Vec3<Real> n = cross(ray.dir, axis);  // across the axis, turned by a quarter
+    // by dir . dir, or products of four lengths overflow beyond 1e9
+    const Vec3<Real> e = ray.inv_dd * n;
+    const Real sine = dot(n, e);  // squared
+    const Real aside = dot(to_base, e);
+    const Real slack = Real(kPassError) * (size * size);
+    const Real chord = (Real(kWider) * (wide * wide) * sine + slack) * ray.inv_dd - aside * aside;
+    const Real inverse = Real(1) / sine;
+    const Real middle = dot(cross(to_base, axis), e) * inverse;
+    const Real half = square_root(chord) * inverse;
+    enter = middle - half;
+    leave = middle + half;
+    const Mask<Real> tiny = wide * wide < Real(kLeastWidth);
+    is_steep = and_not(sine > Real(kLeastSine), tiny);
+    const Real along = dot(ray.dir, axis);
+    const Real height = middle * along - dot(to_base, axis);
+    const Real range = half * magnitude(along) + Real(kPassHeight) * size;
+    const Mask<Real> past = mask_or(height - range > cone.height, height + range < Real(0));
+    may_cross = mask_or(and_not(chord >= Real(0), mask_and(is_steep, past)), tiny);
+  }
+};
+
+/// Lanes whose line does not surely pass a cone by.
 template <class Real>
 [[gnu::always_inline]] inline Mask<Real> may_intersect(const SimdRays<Real>& ray,
                                                        const Cone::Fields<Real>& cone) {
-  const Vec3<Real> to_base = ray.to(vec(cone.base));
-  const Vec3<Real> n = cross(ray.dir, vec(cone.axis));  // across the axis, turned by a quarter
-  // by dir . dir, or products of four lengths overflow beyond 1e9
-  const Vec3<Real> e = ray.inv_dd * n;
-  const Real aside = dot(to_base, e);
-  const Real wide = cone.radius + cone.slope * cone.height;
-  const Real scaled_error = Real(0x1p23f) * ray.frame_error;
-  const Real slack = Real(kWider) * (wide * wide) * dot(n, e) +
-                     Real(kSineError) * (dot(to_base, to_base) + scaled_error * scaled_error);
-  return mask_or(slack * ray.inv_dd - aside * aside >= Real(0), wide * wide < Real(kLeastWidth));
+  return ConePass<Real>(ray, cone).may_cross;
 }
 
 // Error bounds of floats or doubles, in u; docs/numerics.md derives each, cone_test.cpp pins them.
@@ -57,10 +94,6 @@ template <class Real>
     return axis;
   else
     return normalize(axis);
-}
-template <class Real>
-[[gnu::always_inline]] inline Real sum_of_sizes(const Vec3<Real>& a) {
-  return (magnitude(a.x) + magnitude(a.y)) + magnitude(a.z);
 }
 
 /// A line beside the side of a cone: frustum or cylinder, from outside or (through the open ends)
@@ -173,13 +206,14 @@ struct ConeRoot {
   }
 };
 
-/// Bounds the crossings of rays and cones that the line may cross, in a precision.
+/// Bounds the crossings of selected rays and cones in a precision.
 template <class Real>
 [[gnu::always_inline]] inline HitInterval<Real> bound_roots(const SimdRays<Real>& ray,
-                                                            const Cone::Fields<Real>& cone) {
+                                                            const Cone::Fields<Real>& cone,
+                                                            const Mask<Real>& selected) {
   const Real o(0);
   const ConeLine<Real> line(ray, cone);
-  const Mask<Real> may_cross = and_not(line.disc == line.disc, line.disc < o - line.error);
+  const Mask<Real> may_cross = and_not(selected, line.disc < o - line.error);
   if (none(may_cross))
     return {may_cross, may_cross, line.near, line.near};
   const Real root = square_root(max(line.disc, o));
@@ -187,8 +221,10 @@ template <class Real>
   const Real one = q / line.a;
   const Real other = line.c / q;
   const ConeRoot<Real> first(ray, cone, line, min(one, other));
-  const ConeRoot<Real> second(ray, cone, line, max(one, other));
   const Mask<Real> sure = mask_and(may_cross, line.disc > line.error);
+  if (none(and_not(may_cross, first.sure)))
+    return {may_cross, sure, first.lo, first.hi};
+  const ConeRoot<Real> second(ray, cone, line, max(one, other));
   return {mask_and(may_cross, mask_or(first.some, second.some)),
           mask_and(sure, mask_or(first.sure, and_not(second.sure, first.some))),
           select(first.some, first.lo, second.lo),
@@ -204,7 +240,7 @@ template <int i, class Real>
                                                Wide<Real> (&hi)[kWideParts<Real>]) {
   using W = Wide<Real>;
   const HitInterval<W> f =
-      bound_roots<W>(given_in_double<i>(ray), fields_to_double<Cone, i, Real>(cone));
+      bound_roots<W>(given_in_double<i>(ray), fields_to_double<Cone, i, Real>(cone), W(0) == W(0));
   told[i] = select(f.some, select(f.sure, W(2), W(1)), W(0));
   lo[i] = rounded_down(f.lo - shift_in_double<i>(ray));
   hi[i] = rounded_up(f.hi - shift_in_double<i>(ray));
@@ -233,12 +269,14 @@ template <class Real>
                                                       const Cone::Fields<Real>& cone,
                                                       const Real& best) {
   if constexpr (sizeof(Scalar<Real>) == sizeof(double)) {
-    return bound_roots<Real>(ray, cone);
+    return bound_roots<Real>(ray, cone, best == best);
   } else {
-    const Mask<Real> may_cross = may_intersect(ray, cone);
+    const ConePass<Real> pass(ray, cone);
+    const Mask<Real> past = mask_or(pass.enter > best, pass.leave < ray.t_min);
+    const Mask<Real> may_cross = and_not(pass.may_cross, mask_and(pass.is_steep, past));
     if (none(may_cross))
       return {may_cross, may_cross, best, best};
-    HitInterval<Real> found = bound_roots<Real>(ray, cone);
+    HitInterval<Real> found = bound_roots<Real>(ray, cone, may_cross);
     const Real wide = cone.radius + cone.slope * cone.height;
     const Mask<Real> tiny = wide * wide < Real(kLeastWidth);
     const Mask<Real> before = and_not(found.some, mask_and(found.sure, found.lo > best));

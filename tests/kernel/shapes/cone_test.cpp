@@ -4,9 +4,8 @@
 
 #include "grelha/query.hpp"
 #include "kernel/shapes/primitives.hpp"
+#include "tests/support/cone_cases.hpp"
 #include "tests/support/one_hit.hpp"
-#include "tests/support/oracle.hpp"
-#include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace grelha::test {
@@ -15,51 +14,12 @@ namespace {
 class Cone : public EveryVariant {};
 GRELHA_FOR_EVERY_ISA(Cone);
 
-struct Shape {
-  Float3 base, apex;
-  float r0, r1;
-};
-
-/// Cylinders, cones with a tip, frusta, needles and flat collars; one in five shows its inside
-/// alone.
-Shape random_shape(Random& random, double& size) {
-  size = random.log_in(1e-12, 1e12);
-  const double height = size * random.log_in(.05, 20);
-  Shape s;
-  s.base = random.chance(.3) ? Float3{} : random.point(size * random.log_in(1e-2, 1e2));
-  const Float3 axis =
-      random.chance(.3) ? Float3{0, random.chance(.5) ? 1.f : -1.f, 0} : random.direction();
-  s.apex = at(s.base, height, axis);
-  const double sign = random.chance(.2) ? -1 : 1;
-  s.r0 = static_cast<float>(sign * size * random.in(.05, 1));
-  s.r1 = random.chance(.3)   ? s.r0
-         : random.chance(.2) ? 0.f
-                             : static_cast<float>(sign * size * random.in(.05, 1));
-  if (random.chance(.2))
-    std::swap(s.r0, s.r1);
-  size = std::max(size, height);
-  return s;
-}
-
-/// The same down to washers 1e-18 times as high as wide: most of these have no height left unless
-/// they lie at the origin.
-Shape flat_shape(Random& random, double& size) {
-  for (;;) {
-    Shape s = random_shape(random, size);
-    const double wide = std::max(std::abs(s.r0), std::abs(s.r1));
-    s.apex = at(s.base, wide * random.log_in(1e-18, .05), random.direction());
-    size = wide;
-    if (s.apex.x != s.base.x || s.apex.y != s.base.y || s.apex.z != s.base.z)
-      return s;
-  }
-}
-
 TEST_P(Cone, ReturnsTheScalarBits) {
   std::size_t hits = 0;
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     Random random(seed);
     double size;
-    const Shape c = seed % 3 == 2 ? flat_shape(random, size) : random_shape(random, size);
+    const ConeShape c = seed % 3 == 2 ? flat_shape(random, size) : random_shape(random, size);
     const Scene scene = one_cone(c.base, c.r0, c.apex, c.r1);
     const World world(scene, {.grid = false});
     const RayList rays =
@@ -71,75 +31,10 @@ TEST_P(Cone, ReturnsTheScalarBits) {
   EXPECT_GT(hits, 60u * kManyRays / 12);
 }
 
-OneHit hit(const Float3& o, const Float3& d, const Shape& s, float t_min = 0) {
+OneHit hit(const Float3& o, const Float3& d, const ConeShape& s, float t_min = 0) {
   Geometry g;
   g.cones.add(s.base, s.r0, s.apex, s.r1, 0);
   return one_hit<grelha::Cone>(exact_ray(o, d, t_min), grelha::Cone::Source(g)[0]);
-}
-
-struct Case {
-  Shape shape;
-  Float3 org, dir;
-  oracle::Real unit;  ///< eps (|org - base| + height + radius): what the header counts in
-};
-
-/// What a ray is aimed at. Near a tip the quadratic's roots meet, and its coefficients may be large
-/// beside what lies between them.
-enum class Target { kSide, kNarrowEnd, kAlongTheSide, kFlat };
-
-/// A point of the wider end's rim, on the side where `out` points.
-Float3 rim_point(const oracle::V& narrow,
-                 const oracle::V& wide,
-                 oracle::Real radius,
-                 const Float3& out) {
-  const oracle::V axis = oracle::unit(wide - narrow),
-                  across = oracle::V(out) - dot(axis, oracle::V(out)) * axis;
-  const oracle::V p = wide + radius * oracle::unit(across);
-  return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
-}
-
-/// One draw a statement: which of a call's arguments is evaluated first is up to the compiler.
-Case random_case(std::uint64_t seed, double farthest, Target aim) {
-  Random random(seed);
-  double size;
-  Case k;
-  k.shape = aim == Target::kFlat ? flat_shape(random, size) : random_shape(random, size);
-  if (aim == Target::kNarrowEnd ||
-      aim ==
-          Target::kAlongTheSide) {  // half with a tip, the others down to nearly one, at either end
-    const double share = random.log_in(1e-7, 1);
-    if (k.shape.r0 == 0)
-      k.shape.r0 = k.shape.r1;
-    k.shape.r1 = random.chance(.5) ? 0.f : static_cast<float>(k.shape.r0 * share);
-    if (random.chance(.5))
-      std::swap(k.shape.r0, k.shape.r1);
-  }
-  const oracle::Frustum f{k.shape.base, k.shape.apex, k.shape.r0, k.shape.r1};
-  const bool base_is_wide = std::abs(k.shape.r0) > std::abs(k.shape.r1);
-  const Float3 narrow = base_is_wide ? k.shape.apex : k.shape.base,
-               wide = base_is_wide ? k.shape.base : k.shape.apex;
-  const double distance = random.chance(.2) ? random.unit() : random.log_in(.5, farthest);
-  const Float3 side = random.direction(), across = random.direction();
-  k.org = at(k.shape.base, size * distance, side);
-  Float3 target;
-  if (aim == Target::kSide || aim == Target::kFlat) {
-    const double height = random.unit(), beside = random.in(0, aim == Target::kFlat ? 1.2 : .5);
-    target = at(at(k.shape.base, height, minus(k.shape.apex, k.shape.base)), size * beside, across);
-  } else {
-    const double beside = random.log_in(1e-9, 1);
-    target = at(narrow, size * beside, across);
-  }
-  if (aim == Target::kAlongTheSide) {
-    const Float3 rim = rim_point(
-        narrow, wide, std::max(std::abs(k.shape.r0), std::abs(k.shape.r1)), random.direction());
-    const double sign = random.sign(), lengths = sign * random.log_in(.5, 1e2),
-                 beside = random.log_in(1e-9, .1);
-    k.org = at(at(narrow, lengths, minus(rim, narrow)), size * beside, side);
-  }
-  k.dir = scaled(minus(target, k.org), random.log_in(1e-2, 1e2));
-  k.unit = oracle::kEps * (length(oracle::V(k.org) - f.base) + f.height() +
-                           std::max(std::abs(f.r0), std::abs(f.r1)));
-  return k;
 }
 
 class ConePoints : public testing::TestWithParam<Target> {};
@@ -148,7 +43,7 @@ TEST_P(ConePoints, LieOnTheSurface) {
   oracle::Real worst = 0;
   int hits = 0, over = 0;
   for (std::uint64_t seed = 0; seed < 300000; ++seed) {
-    const Case k = random_case(seed, 1e4, GetParam());
+    const ConeCase k = random_case(seed, 1e4, GetParam());
     const auto [found, t] = hit(k.org, k.dir, k.shape);
     if (!found)
       continue;
@@ -183,7 +78,8 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(ConeOracle, LosesNoHitNearATip) {
   int wanted = 0, lost = 0;
   for (std::uint64_t seed = 0; seed < 300000; ++seed) {
-    const Case k = random_case(seed, 1e3, seed % 2 ? Target::kNarrowEnd : Target::kAlongTheSide);
+    const ConeCase k =
+        random_case(seed, 1e3, seed % 2 ? Target::kNarrowEnd : Target::kAlongTheSide);
     const oracle::Frustum f{k.shape.base, k.shape.apex, k.shape.r0, k.shape.r1};
     const oracle::Real bound = 32 * k.unit, hole = std::min(std::abs(f.r0), std::abs(f.r1));
     if (hole > 0 && hole < bound)
@@ -220,7 +116,7 @@ TEST(ConeOracle, FindsTheFirstCrossing) {
   int judged = 0, wrong = 0;
   oracle::Real worst = 0;
   for (std::uint64_t seed = 0; seed < 300000; ++seed) {
-    const Case k = random_case(seed, 1e3, Target::kSide);
+    const ConeCase k = random_case(seed, 1e3, Target::kSide);
     const oracle::Frustum f{k.shape.base, k.shape.apex, k.shape.r0, k.shape.r1};
     const oracle::Ray ray{k.org, k.dir};
     const oracle::Real tolerance = 32 * k.unit;
@@ -257,7 +153,7 @@ TEST(ConeOracle, FindsTheFirstCrossing) {
 TEST(ConeOracle, IsShadedWhereItIs) {
   int judged = 0, off = 0, aside = 0;
   for (std::uint64_t seed = 0; seed < 40000; ++seed) {
-    const Case k = random_case(seed, 1e3, seed % 2 ? Target::kFlat : Target::kSide);
+    const ConeCase k = random_case(seed, 1e3, seed % 2 ? Target::kFlat : Target::kSide);
     const Scene scene = one_cone(k.shape.base, k.shape.r0, k.shape.apex, k.shape.r1);
     const World world(scene, {.grid = false, .threads = 1});
     const Ray ray{.org = k.org, .dir = k.dir};
@@ -285,7 +181,7 @@ TEST(ConeOracle, IsShadedWhereItIs) {
 TEST(ConeOracle, MeetsFlatOnesBetweenTheirRims) {
   int between = 0, lost = 0, beside = 0, met = 0;
   for (std::uint64_t seed = 0; seed < 300000; ++seed) {
-    const Case k = random_case(seed, 1e3, Target::kFlat);
+    const ConeCase k = random_case(seed, 1e3, Target::kFlat);
     const oracle::Frustum f{k.shape.base, k.shape.apex, k.shape.r0, k.shape.r1};
     if (k.shape.r0 + k.shape.r1 <= 0 || k.shape.r0 == k.shape.r1)
       continue;
@@ -321,7 +217,8 @@ TEST(ConeOracle, IsNotMetByWhatLeavesIt) {
   for (std::uint64_t seed = 0; seed < 600000; ++seed) {
     Random random(seed);
     double size;
-    const Shape shape = random.chance(.3) ? flat_shape(random, size) : random_shape(random, size);
+    const ConeShape shape =
+        random.chance(.3) ? flat_shape(random, size) : random_shape(random, size);
     if (shape.r0 + shape.r1 <= 0)
       continue;  // no radius, or only the inside
     const oracle::Frustum f{shape.base, shape.apex, shape.r0, shape.r1};
@@ -354,8 +251,49 @@ TEST(ConeOracle, IsNotMetByWhatLeavesIt) {
   EXPECT_GT(left, 300000);
 }
 
+/// Floats keep a crossing however closely a search is drawn around it: of rays to the rims and the
+/// widest places of a side, from anywhere or nearly along the axis.
+TEST(ConeOracle, KeepsCrossingsAtTheEndsOfSearches) {
+  int crossed = 0;
+  for (std::uint64_t seed = 0; seed < 300000; ++seed) {
+    Random random(seed);
+    double size;
+    const ConeShape shape =
+        random.chance(.2) ? flat_shape(random, size) : random_shape(random, size);
+    const bool to_apex = random.chance(.5);
+    const Float3 from = to_apex ? shape.apex : shape.base;
+    const Float3 to = to_apex ? shape.base : shape.apex;
+    const oracle::V rim =
+        oracle::V(rim_point(from, to, std::abs(to_apex ? shape.r0 : shape.r1), random.direction()));
+    const Float3 target =
+        at({static_cast<float>(rim.x), static_cast<float>(rim.y), static_cast<float>(rim.z)},
+           random.chance(.5) ? 0 : random.log_in(1e-9, .1),
+           minus(from, to));
+    Float3 way = random.direction();
+    if (random.chance(.5))
+      way = at(scaled(minus(to, from), 1 / size), random.log_in(1e-8, 1), way);
+    const double distance = size * random.log_in(.5, 1e5);
+    const Float3 org = at(target, random.sign() * distance, way);
+    const Float3 dir = scaled(minus(target, org), random.log_in(.5, 1e2) / distance);
+    Geometry g;
+    g.cones.add(shape.base, shape.r0, shape.apex, shape.r1, 0);
+    const auto cone = grelha::Cone::Source(g)[0];
+    ExactRay ray = exact_ray(org, dir);
+    const ExactCrossing crossing = exact_hit(ray, cone);
+    const float t = crossing.some() ? crossing.rounded() : 0;
+    constexpr float kEnd = std::numeric_limits<float>::infinity();
+    if (!(t > 0) || t == kEnd)
+      continue;
+    ++crossed;
+    ray.t_min = std::nextafter(t, -kEnd);
+    one_hit<grelha::Cone>(ray, cone, std::nextafter(t, kEnd));
+  }
+  std::printf("cone: %d crossings at the ends of searches\n", crossed);
+  EXPECT_GT(crossed, 60000);
+}
+
 TEST(ConeCorners, EndsSidesAndAxes) {
-  const Shape pipe{{0, 0, 0}, {0, 2, 0}, 1, 1}, lining{{0, 0, 0}, {0, 2, 0}, -1, -1},
+  const ConeShape pipe{{0, 0, 0}, {0, 2, 0}, 1, 1}, lining{{0, 0, 0}, {0, 2, 0}, -1, -1},
       tip{{0, 0, 0}, {0, 2, 0}, 1, 0};
   EXPECT_EQ(hit({3, 1, 0}, {-1, 0, 0}, pipe).t, 2);
   EXPECT_EQ(hit({3, 1, 0}, {-1, 0, 0}, lining).t, 4);
