@@ -20,7 +20,7 @@ class CrossingList {
     if (!prepared_.valid)
       return;
     ray_ = prepared_.exact();
-    AlongRay(scene_, prepared_, *this);
+    walk_scene(scene_, prepared_.single, *this);
     std::sort(found_.begin(), found_.end(), [](const CrossedTriangle& a, const CrossedTriangle& b) {
       return a.id < b.id;
     });
@@ -32,18 +32,23 @@ class CrossingList {
     apply_filter();
   }
 
-  /// For AlongRay. A ray that starts inside a sphere comes to it.
-  void primitive(std::uint32_t id) {
-    const PrimitiveIds& ids = scene_.geometry.ids;
-    if (!ids.has(PrimitiveKind::kSphere, id))
-      return;
-    const auto sphere =
-        primitive_at<Sphere>(scene_.geometry.of<Sphere>(), id - ids.begin(PrimitiveKind::kSphere));
-    in_sphere_ = in_sphere_ || is_within(ray_.org, sphere.center, sphere.radius);
-  }
-  void block(const TriangleBlock& block) {
+  // For walk_scene(). A ray that starts inside a sphere comes to it.
+  static constexpr bool kInAnyOrder = true;
+  bool block(const scalar::Single&, const TriangleBlock& block) {
     for (int i = 0; i < kBlock && block.id[i] != kNoPrimitive; ++i)
       take(block.id[i], scalar::triangle_of(block, i));
+    return false;
+  }
+  bool arrays(const scalar::Single&, const CellLists& lists, std::size_t cell) {
+    const PrimitiveIds& ids = scene_.geometry.ids;
+    each_in_arrays(lists, cell, [&](std::uint32_t id) {
+      if (!ids.has(PrimitiveKind::kSphere, id))
+        return;
+      const auto sphere = primitive_at<Sphere>(scene_.geometry.of<Sphere>(),
+                                               id - ids.begin(PrimitiveKind::kSphere));
+      in_sphere_ = in_sphere_ || is_within(ray_.org, sphere.center, sphere.radius);
+    });
+    return false;
   }
 
   std::size_t count() const { return found_.size(); }

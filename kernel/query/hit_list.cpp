@@ -10,17 +10,19 @@ constexpr double kSameCrossing =
     0x1p-45;  ///< times t: crossings of one primitive so near count as one
 }  // namespace
 
-void HitList::block(const TriangleBlock& block) {
+bool HitList::block(const scalar::Single&, const TriangleBlock& block) {
   for (int i = 0; i < kBlock && block.id[i] != kNoPrimitive; ++i) {
     const Triangle::Fields<float> triangle = scalar::triangle_of(block, i);
     const scalar::HitInterval<double> found = scalar::bound_triangle(ray_, triangle.corner);
     if (found.some && !(found.lo >= ray_.t_max))  // NaN: double does not tell
       ids_.push_back(block.id[i]);
   }
+  return false;
 }
 
-void HitList::primitive(std::uint32_t id) {
-  ids_.push_back(id);
+bool HitList::arrays(const scalar::Single&, const CellLists& lists, std::size_t cell) {
+  each_in_arrays(lists, cell, [&](std::uint32_t id) { ids_.push_back(id); });
+  return false;
 }
 
 ExactRay HitList::ray_from(double t_min) const {
@@ -78,14 +80,14 @@ const std::vector<Hit>& HitList::find(const Ray& ray) {
   hits_.clear();
   ids_.clear();
   crossings_.clear();
-  const PreparedRay prepared(world_.view, ray);
+  PreparedRay prepared(world_.view, ray);
   if (!prepared.valid)
     return hits_;
   ray_ = prepared.exact();
-  AlongRay(world_.view, prepared, *this);
+  walk_scene(world_.view, prepared.single, *this);
   const PrimitiveIds& ids = world_.view.geometry.ids;
   for (std::uint32_t i = 0; i < world_.view.geometry.of<Plane>().count; ++i)
-    primitive(ids.begin(PrimitiveKind::kPlane) + i);
+    ids_.push_back(ids.begin(PrimitiveKind::kPlane) + i);
   std::sort(ids_.begin(), ids_.end());
   ids_.erase(std::unique(ids_.begin(), ids_.end()), ids_.end());
   for (const std::uint32_t id : ids_)

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "grelha/query.hpp"
-#include "kernel/query/along_ray.hpp"
+#include "kernel/query/prepared_ray.hpp"
 
 namespace grelha {
 
@@ -21,8 +21,10 @@ class HitList {
   /// The hits of a ray, in order of the exact t, then of id.
   const std::vector<Hit>& find(const Ray& ray);
 
-  void block(const TriangleBlock& block);  ///< for AlongRay
-  void primitive(std::uint32_t id);        ///< the same
+  // For walk_scene(), which comes to some primitives more than once.
+  static constexpr bool kInAnyOrder = true;
+  bool block(const scalar::Single&, const TriangleBlock& block);
+  bool arrays(const scalar::Single&, const CellLists& lists, std::size_t cell);
 
  private:
   /// One crossing: the first of a primitive beyond `t_min`.

@@ -21,9 +21,23 @@ inline bool test_infinite(const SceneView& scene, Single& r) {
   return over;
 }
 
-/// The triangles of one cell of a grid. Returns whether the search is over.
+/// What a walk does with the primitives it comes to: tests for the closest hit of its ray, or for
+/// any. A walk can be given others that have these functions, which return whether it is over.
 template <bool kAny>
-inline bool test_triangles(Single& r, const GridView& g, std::uint32_t cell) {
+struct HitTests {
+  static constexpr bool kInAnyOrder = kAny;  ///< of grids
+  [[gnu::always_inline]] static bool block(Single& r, const TriangleBlock& block) {
+    return test_block<kAny>(r, block);
+  }
+  [[gnu::always_inline]] static bool arrays(Single& r, const CellLists& lists, std::size_t cell) {
+    NoCounters n;
+    return test_arrays<kAny>(r, lists, cell, n);
+  }
+};
+
+/// The triangles of one cell of a grid, as far as the ray passes the boxes of their blocks.
+template <class Tests>
+inline bool visit_triangles(Single& r, const GridView& g, std::uint32_t cell, Tests& tests) {
   const Triangle::CellList& list = g.lists.of<Triangle>();
   const std::uint32_t first = list.first[cell];
   const std::uint32_t end = list.first[cell + 1];
@@ -36,7 +50,7 @@ inline bool test_triangles(Single& r, const GridView& g, std::uint32_t cell) {
          passed &= passed - 1) {
       const unsigned k = static_cast<unsigned>(__builtin_ctz(passed));
       // a hit found since may be nearer
-      if (enters[k] <= r.best && test_block<kAny>(r, blocks[k]))
+      if (enters[k] <= r.best && tests.block(r, blocks[k]))
         return true;
     }
   }
@@ -48,20 +62,19 @@ inline bool test_triangles(Single& r, const GridView& g, std::uint32_t cell) {
 inline constexpr int kLeastLeap = 3;
 
 /// Takes one ray through a grid, cell by cell, until a hit ends it or the grid does.
-template <bool kAny>
-inline void walk_one(const GridView& g, Single& r) {
+template <class Tests>
+inline void walk_one(const GridView& g, Single& r, Tests& tests) {
   CellDda walk(g);
   if (!walk.start(r))
     return;
   const bool triangles = g.lists.of<Triangle>().first;
   const bool arrays = holds_arrays(g.lists);
-  NoCounters n;
   // no more planes than there are, whatever rounding does
   for (int left = g.n[0] + g.n[1] + g.n[2] + 3; left > 0; --left) {
     const int distance = walk.distance();
     const auto cell = static_cast<std::uint32_t>(walk.cell());
-    if (distance == 0 && ((triangles && test_triangles<kAny>(r, g, cell)) ||
-                          (arrays && test_arrays<kAny>(r, g.lists, cell, n))))
+    if (distance == 0 && ((triangles && visit_triangles(r, g, cell, tests)) ||
+                          (arrays && tests.arrays(r, g.lists, cell))))
       return;
     if (!(distance >= kLeastLeap ? walk.leap(distance - 1, r.best) : walk.step(r.best)))
       return;
@@ -69,8 +82,8 @@ inline void walk_one(const GridView& g, Single& r) {
 }
 
 /// As search_far().
-template <bool kAny>
-[[gnu::noinline]] void walk_one_far(const GridView& g, Single& r) {
+template <class Tests>
+[[gnu::noinline]] void walk_one_far(const GridView& g, Single& r, Tests& tests) {
   Entry to;
   if (!enter_far(g, r.org, r.dir, r.t_min, r.best, to))
     return;
@@ -85,14 +98,40 @@ template <bool kAny>
   moved.error_bound = g.error_bound + 32 * g.frame_error;
   moved.shift = to.shift;
   moved.given.shift = &moved.shift;
-  walk_one<kAny>(in_grid_frame(g), moved);
+  walk_one(in_grid_frame(g), moved, tests);
   if (moved.id == r.id)
     return;
   r.block = moved.block;
-  if (kAny)
+  if (moved.best == -kInfinity)  // any hit
     set_hit(r, {-kInfinity, -kInfinity}, moved.id);
   else
     set_hit(r, {round_t_down(moved.low, -to.shift), round_t_up(moved.best, -to.shift)}, moved.id);
+}
+
+/// Takes one ray to the primitives that lie in no grid.
+template <class Tests>
+inline bool visit_outside(const CellLists& lists, Single& r, Tests& tests) {
+  const Triangle::CellList& triangles = lists.of<Triangle>();
+  for (std::uint32_t i = 0; triangles.first && i < triangles.first[1]; ++i)
+    if (tests.block(r, triangles.blocks[i]))
+      return true;
+  return holds_arrays(lists) && tests.arrays(r, lists, 0);
+}
+
+/// Takes one ray to all primitives that are not infinite.
+template <class Tests>
+inline void walk_scene(const SceneView& scene, Single& r, Tests& tests) {
+  if (scene.outside.of<Sphere>().first)
+    r.error_bound = error_bound_in(scene, vec(r.org));
+  if (visit_outside(scene.outside, r, tests))
+    return;
+  each_grid<Tests::kInAnyOrder>(scene, r.org, r.dir, r.t_min, [&](const GridView& g) {
+    r.error_bound = g.error_bound;
+    if (starts_near(g, r.org))
+      walk_one(g, r, tests);
+    else
+      walk_one_far(g, r, tests);
+  });
 }
 
 /// t of a ray's hit, rounded once, in the units of `ray`; of a triangle from the corners that the
@@ -111,24 +150,6 @@ inline float t_of(const Single& r, const ExactRay& ray, const CrossingSpan& know
   return rounded_t(g, ray, r.id, known);
 }
 
-/// All that a prepared ray hits.
-template <bool kAny>
-inline void walk_scene(const SceneView& scene, Single& r) {
-  NoCounters n;
-  if (test_infinite<kAny>(scene, r))
-    return;
-  r.error_bound = error_bound_in(scene, vec(r.org));
-  if (test_cell<kAny>(r, scene.outside, 0, n))
-    return;
-  each_grid<kAny>(scene, r.org, r.dir, r.t_min, [&](const GridView& g) {
-    r.error_bound = g.error_bound;
-    if (starts_near(g, r.org))
-      walk_one<kAny>(g, r);
-    else
-      walk_one_far<kAny>(g, r);
-  });
-}
-
 /// The closest hit of a ray, or with kAny any hit: its t must not be used then.
 template <bool kAny>
 inline Hit trace_one(const SceneView& scene, const Ray& ray, const RayFilter* filter = nullptr) {
@@ -138,7 +159,9 @@ inline Hit trace_one(const SceneView& scene, const Ray& ray, const RayFilter* fi
     return {ray.t_max, kNoPrimitive};
   r.geometry = &scene.geometry;
   r.filter = filter;
-  walk_scene<kAny>(scene, r);
+  HitTests<kAny> tests;
+  if (!test_infinite<kAny>(scene, r))
+    walk_scene(scene, r, tests);
   if (kAny || r.id == kNoPrimitive)
     return {ray.t_max, r.id};
   const ExactRay given_ray = r.given.ray(0).in_units_of(1 / static_cast<double>(r.unit));

@@ -244,17 +244,4 @@ template <bool kAny, class Ray, class Counts>
   return over;
 }
 
-/// Tests all primitives of one cell.
-template <bool kAny, class Ray, class Counts>
-inline bool test_cell(Ray& r, const CellLists& lists, std::size_t cell, Counts& n) {
-  const Triangle::CellList& triangles = lists.of<Triangle>();
-  if (triangles.first)
-    for (std::uint32_t i = triangles.first[cell]; i < triangles.first[cell + 1]; ++i) {
-      count_rows<Triangle>(n, 1, kBlock);
-      if (test_block<kAny>(r, triangles.blocks[i]))
-        return true;
-    }
-  return holds_arrays(lists) && test_arrays<kAny>(r, lists, cell, n);
-}
-
 }  // namespace grelha::GRELHA_ISA
