@@ -54,16 +54,4 @@ struct TraceOptions {
   const std::uint8_t* masks = nullptr;  ///< [primitives], see RayFilter
 };
 
-/// Counts of a trace.
-struct Counters {
-  std::uint64_t visits = 0;
-  std::uint64_t tests[kKinds] = {};  ///< by kind
-  std::uint64_t box_rows = 0;
-  std::uint64_t primitive_rows = 0;
-  std::uint64_t formed = 0;
-  std::uint64_t packet_fallbacks = 0;
-  std::uint64_t issued = 0;
-  std::uint64_t busy = 0;
-};
-
 }  // namespace grelha

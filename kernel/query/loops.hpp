@@ -7,30 +7,6 @@
 
 namespace grelha::GRELHA_ISA {
 
-inline void add(const Counters& n, TraceCounts& to) {
-  to.visits += n.visits;
-  to.tests.sphere += n.tests[kNumber<Sphere>];
-  to.tests.triangle += n.tests[kNumber<Triangle>];
-  to.tests.cone += n.tests[kNumber<Cone>];
-  to.tests.plane += n.tests[kNumber<Plane>];
-  to.rows.boxes += n.box_rows;
-  to.rows.primitives += n.primitive_rows;
-  to.packets.formed += n.formed;
-  to.packets.packet_fallbacks += n.packet_fallbacks;
-  to.packets.lanes_issued += n.issued;
-  to.packets.lanes_busy += n.busy;
-}
-
-inline void closest(const SceneView& scene,
-                    const Rays& rays,
-                    const Hits& hits,
-                    const TraceOptions& options,
-                    TraceCounts& counts) {
-  Counters n;
-  trace_closest(scene, rays, hits, options, n);
-  add(n, counts);
-}
-
 /// Stores a byte for each ray of a packet: whether it hit anything.
 inline void store_blocked(const Packet& p, std::uint8_t* to) {
   std::uint8_t bytes[kPacket];  // which nothing else may point to: SIMD
@@ -44,15 +20,13 @@ inline void occluded(const SceneView& scene,
                      std::uint8_t* blocked,
                      const TraceOptions& options,
                      TraceCounts& counts) {
-  Counters n;
   const auto store = [&](const Packet& p, std::size_t first) { store_blocked(p, blocked + first); };
   StreamFilter filter(scene, rays, options);
   const auto load = [&](Packet& p, std::size_t first) {
     load_rays(rays, first, p);
     filter.set(first, p);
   };
-  trace<true>(scene, rays.count, options, n, load, store);
-  add(n, counts);
+  trace<true>(scene, rays.count, options, counts, load, store);
 }
 
 /// A ray by itself, and what it leaves out, or null.

@@ -17,20 +17,13 @@ inline void enter(const StripWork& work, Phase phase, const Rays& rays) {
     work.observer->enter(*work.observer, phase, &rays);
 }
 
-struct RayTally {
-  std::uint64_t primary = 0;
-  std::uint64_t shadow = 0;
-  std::uint64_t reflection = 0;
-  std::uint64_t refraction = 0;
-};
-
 /// Everything a thread's shading needs to know.
 struct Shader {
   const SceneView& scene;
   const ShadingView& shading;
   const StripWork& work;
-  Counters& counters;
-  RayTally& rays;
+  TraceCounts& counters;
+  RayCounts& rays;
   Batch& b;
 };
 

@@ -259,8 +259,8 @@ inline void render_strip(const SceneView& scene,
                          const FrameView& frame,
                          const Part& part,
                          const StripWork& work,
-                         Counters& counters,
-                         RayTally& rays) {
+                         TraceCounts& counters,
+                         RayCounts& rays) {
   const int y0 = part.rows.begin;
   const int y1 = part.rows.end;
   const Shader shader{scene, shading, work, counters, rays, *work.batch};
@@ -287,8 +287,8 @@ inline void render_runs(const SceneView& scene,
                         const PixelRun* runs,
                         int count,
                         const StripWork& work,
-                        Counters& counters,
-                        RayTally& rays) {
+                        TraceCounts& counters,
+                        RayCounts& rays) {
   const Shader shader{scene, shading, work, counters, rays, *work.batch};
   CameraBatch batch(shader, frame, true);
   const auto width = static_cast<std::uint32_t>(frame.width);
@@ -311,8 +311,8 @@ inline void render_points(const SceneView& scene,
                           const FrameView& frame,
                           const PointList& points,
                           const StripWork& work,
-                          Counters& counters,
-                          RayTally& rays) {
+                          TraceCounts& counters,
+                          RayCounts& rays) {
   const Shader shader{scene, shading, work, counters, rays, *work.batch};
   CameraBatch batch(shader, frame, false);
   for (int i = 0; i < points.count; ++i)

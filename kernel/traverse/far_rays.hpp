@@ -190,7 +190,7 @@ template <bool kAny>
 [[gnu::noinline]] void search_far(const GridView& g,
                                   Packet& p,
                                   const TraceOptions& options,
-                                  Counters& n) {
+                                  TraceCounts& n) {
   FarRays rays(g, p);
   if (rays.any()) {
     traverse_packet<kAny>(in_grid_frame(g), rays.packet(), options.packet, options.mailbox, n);

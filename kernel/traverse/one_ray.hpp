@@ -30,7 +30,7 @@ struct HitTests {
     return test_block<kAny>(r, block);
   }
   [[gnu::always_inline]] static bool arrays(Single& r, const CellLists& lists, std::size_t cell) {
-    NoCounters n;
+    NoCounts n;
     return test_arrays<kAny>(r, lists, cell, n);
   }
 };

@@ -144,10 +144,23 @@ inline void record(Packet& p,
            [&](int k) { record_tie<kAny>(p, i + k, id); });
 }
 
+/// Counts tests of a kind; those of a kind without a counter are not counted.
+template <class Shape>
+[[gnu::always_inline]] inline void count_tests(TraceCounts& n, unsigned tests) {
+  if constexpr (Shape::kKind == PrimitiveKind::kSphere)
+    n.tests.sphere += tests;
+  else if constexpr (Shape::kKind == PrimitiveKind::kTriangle)
+    n.tests.triangle += tests;
+  else if constexpr (Shape::kKind == PrimitiveKind::kCone)
+    n.tests.cone += tests;
+  else if constexpr (Shape::kKind == PrimitiveKind::kPlane)
+    n.tests.plane += tests;
+}
+
 /// Tests all live rays against a primitive of a kind and counts that: runs `test(i, g)` for the
 /// first lane i of every live group g.
 template <class Shape, class Test>
-[[gnu::always_inline]] inline void each_tested(const Packet& p, Counters& n, const Test& test) {
+[[gnu::always_inline]] inline void each_tested(const Packet& p, TraceCounts& n, const Test& test) {
   unsigned busy = 0;  // in one pass with the tests: these look at best and t_min as well
   each_live_group(
       p, [&](int i, int g) __attribute__((always_inline)) {
@@ -155,15 +168,18 @@ template <class Shape, class Test>
         busy += static_cast<unsigned>(__builtin_popcount(on));
         test(i, g);
       });
-  n.issued += static_cast<unsigned>(__builtin_popcountll(p.live) * kWidth<VFloat>);
-  n.busy += busy;
-  n.tests[kNumber<Shape>] += busy;
+  n.packets.lanes_issued += static_cast<unsigned>(__builtin_popcountll(p.live) * kWidth<VFloat>);
+  n.packets.lanes_busy += busy;
+  count_tests<Shape>(n, busy);
 }
 
 /// All live rays against primitive `index` of many.
 template <bool kAny, class Shape>
-inline void test_one(
-    Packet& p, const FieldArrays<Shape>& of, std::uint32_t index, std::uint32_t id, Counters& n) {
+inline void test_one(Packet& p,
+                     const FieldArrays<Shape>& of,
+                     std::uint32_t index,
+                     std::uint32_t id,
+                     TraceCounts& n) {
   const auto one = broadcast<Shape, VFloat>(of, index);
   const auto met = one_of<Shape>(of, index);
   each_tested<Shape>(p, n, [&](int i, int) {
@@ -228,7 +244,7 @@ template <bool kAny>
 [[gnu::noinline]] void test_triangle(Packet& p,
                                      const Triangle::Fields<float>& triangle,
                                      std::uint32_t id,
-                                     Counters& n) {
+                                     TraceCounts& n) {
   Triangle::Fields<float> framed;
   for (int k = 0; p.base && k < 3; ++k)
     for (int a = 0; a < 3; ++a)

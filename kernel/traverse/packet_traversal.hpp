@@ -56,8 +56,12 @@ inline Interval side_in(const Frustum& f, int j, const SliceSpan& s) {
 /// Calls visit.look(cell) for the cells with something in them that lie in a rectangle of a slice.
 /// Returns the least distance that a cell of it has to one before it with something in it.
 template <class Visit>
-[[gnu::always_inline]] inline int look_into_cells(
-    const GridView& g, const Frustum& f, int slice, const CellRect& r, Counters& n, Visit& visit) {
+[[gnu::always_inline]] inline int look_into_cells(const GridView& g,
+                                                  const Frustum& f,
+                                                  int slice,
+                                                  const CellRect& r,
+                                                  TraceCounts& n,
+                                                  Visit& visit) {
   const std::size_t stride[3] = {
       1,
       static_cast<std::size_t>(g.n[0]),
@@ -91,7 +95,7 @@ inline int empty_slices(const Frustum& f, int nearest) {
 template <class Visit>
 [[gnu::always_inline]] inline void walk_frustum(const GridView& g,
                                                 const Frustum& f,
-                                                Counters& n,
+                                                TraceCounts& n,
                                                 Visit& visit) {
   const int slices = g.n[f.k];
   int slice = clamp_cell(static_cast<double>(f.from - f.margin), slices);
@@ -144,7 +148,8 @@ inline constexpr int kLeastSingleRays = 3;
 template <bool kAny>
 class PacketVisit {
  public:
-  PacketVisit(const GridView& g, const Frustum& f, Packet& p, int width, bool mailbox, Counters& n)
+  PacketVisit(
+      const GridView& g, const Frustum& f, Packet& p, int width, bool mailbox, TraceCounts& n)
       : g_(g), f_(f), p_(p), n_(n), width_(width), limit_(most_cells(width)), mailbox_(mailbox) {
     if (mailbox)
       held_.clear();
@@ -283,7 +288,7 @@ class PacketVisit {
   const GridView& g_;
   const Frustum& f_;
   Packet& p_;
-  Counters& n_;
+  TraceCounts& n_;
   int width_;
   int limit_;
   int started_ = 0;
@@ -305,7 +310,7 @@ inline void start_from_slice(const Frustum& f, Packet& p, int slice) {
 
 template <bool kAny>
 inline std::uint64_t packet_traverse(
-    const GridView& g, Packet& p, int width, bool use_mailbox, Counters& n);
+    const GridView& g, Packet& p, int width, bool use_mailbox, TraceCounts& n);
 
 inline FrustumStats& stats_of(Packet& p, int width) {
   return width > kMiddle ? p.large_stats : width > kSmall ? p.middle_stats : p.small_stats;
@@ -314,7 +319,7 @@ inline FrustumStats& stats_of(Packet& p, int width) {
 /// The live rays of a packet in smaller ones of `rays` neighbours each; see packet_traverse().
 template <bool kAny>
 inline std::uint64_t traverse_parts(
-    const GridView& g, Packet& p, int rays, bool use_mailbox, Counters& n) {
+    const GridView& g, Packet& p, int rays, bool use_mailbox, TraceCounts& n) {
   const std::uint64_t live = p.live;
   const int each = rays / kWidth<VFloat>;
   std::uint64_t apart = 0;
@@ -328,8 +333,8 @@ inline std::uint64_t traverse_parts(
 /// Splits a packet that does not go together into four; rays that do not there go one by one.
 template <bool kAny>
 inline std::uint64_t split_packet(
-    const GridView& g, Packet& p, int width, bool use_mailbox, Counters& n) {
-  ++n.packet_fallbacks;
+    const GridView& g, Packet& p, int width, bool use_mailbox, TraceCounts& n) {
+  ++n.packets.packet_fallbacks;
   if (width <= kSmall)
     return p.live;
   return traverse_parts<kAny>(g, p, width > kMiddle ? kMiddle : kSmall, use_mailbox, n);
@@ -340,7 +345,7 @@ inline std::uint64_t split_packet(
 /// themselves, from p.start on. Leaves `live` unchanged on return.
 template <bool kAny>
 inline std::uint64_t packet_traverse(
-    const GridView& g, Packet& p, int width, bool use_mailbox, Counters& n) {
+    const GridView& g, Packet& p, int width, bool use_mailbox, TraceCounts& n) {
   FrustumStats& stats = stats_of(p, width);
   if (!stats.should_try())
     return split_packet<kAny>(g, p, width, use_mailbox, n);
@@ -366,14 +371,14 @@ inline std::uint64_t packet_traverse(
     return split_packet<kAny>(g, p, width, use_mailbox, n);
   }
   stats.record(1);
-  ++n.formed;
+  ++n.packets.formed;
   return 0;
 }
 
 /// All rays of a packet through one grid, from p.start on, `width` neighbours together.
 template <bool kAny>
 inline void traverse_packet(
-    const GridView& g, Packet& p, int width, bool use_mailbox, Counters& n) {
+    const GridView& g, Packet& p, int width, bool use_mailbox, TraceCounts& n) {
   if (width == 1)
     return stream_traverse<kAny>(g, p, n);
   const std::uint64_t live = p.live;

@@ -134,21 +134,18 @@ struct BlockSource {
   }
 };
 
-/// Replaces Counters when no caller asks for them: clearing these took up to a twentieth of a call
+/// Replaces TraceCounts when no caller asks for them: clearing these took up to a twentieth of a call
 /// for one ray.
-struct NoCounters {
-  struct Nowhere {
-    void operator+=(unsigned) const {}
-  };
-  Nowhere primitive_rows, tests[kKinds];
-};
+struct NoCounts {};
 
 /// Counts the rows of primitives that a ray is tested against.
-template <class Shape, class Counts>
-inline void count_rows(Counts& n, int rows, int width) {
-  n.primitive_rows += static_cast<unsigned>(rows);
-  n.tests[kNumber<Shape>] += static_cast<unsigned>(rows * width);
+template <class Shape>
+inline void count_rows(TraceCounts& n, int rows, int width) {
+  n.rows.primitives += static_cast<unsigned>(rows);
+  count_tests<Shape>(n, static_cast<unsigned>(rows * width));
 }
+template <class Shape>
+inline void count_rows(NoCounts&, int, int) {}
 
 /// Callers count rows.
 template <bool kAny, class Ray>

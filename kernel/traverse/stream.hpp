@@ -114,7 +114,7 @@ template <bool kAny, class Load, class Store>
 inline void trace(const SceneView& scene,
                   std::size_t count,
                   const TraceOptions& options,
-                  Counters& n,
+                  TraceCounts& n,
                   const Load& load,
                   const Store& store) {
   Packet p;
@@ -208,11 +208,11 @@ inline void store_hits(const Packet& p, const Rays& rays, std::size_t first, con
 }
 
 /// Finds the closest hits of the rays of a view.
-inline void trace_closest(const SceneView& scene,
-                          const Rays& rays,
-                          const Hits& hits,
-                          const TraceOptions& options,
-                          Counters& n) {
+inline void closest(const SceneView& scene,
+                    const Rays& rays,
+                    const Hits& hits,
+                    const TraceOptions& options,
+                    TraceCounts& n) {
   StreamFilter filter(scene, rays, options);
   const auto load = [&](Packet& p, std::size_t first) {
     load_rays(rays, first, p);

@@ -27,7 +27,7 @@ inline constexpr std::size_t kAskedFor = 16;
 template <bool kAny>
 class CellTests {
  public:
-  CellTests(const GridView& g, Packet& p, Counters& n)
+  CellTests(const GridView& g, Packet& p, TraceCounts& n)
       : lists_(g.lists), p_(p), n_(n), pairs_(g, p) {
     if (triangles_.first)
       need_slabs(p);
@@ -73,7 +73,7 @@ class CellTests {
                                          int due) {
     const PacketRay r{p_, static_cast<int>(ray)};
     const std::uint32_t block = triangles_.block_at(at);
-    ++n_.box_rows;
+    ++n_.rows.boxes;
     for (int i = 0; i < kBlock; i += kWidth<Block>) {
       Block enter;
       const unsigned hit = hit_boxes_from(r, triangles_.boxes[at / kBlock], i, enter);
@@ -168,7 +168,7 @@ class CellTests {
   const CellLists& lists_;
   const Triangle::CellList& triangles_ = lists_.of<Triangle>();
   Packet& p_;
-  Counters& n_;
+  TraceCounts& n_;
   std::uint32_t first_[kPacket];
   std::uint32_t end_[kPacket];
   alignas(64) std::uint32_t due_ray_[kMost + kBlock];
@@ -183,7 +183,7 @@ class CellTests {
 /// ray to the wrong side of a corner, the error is less than the pad around primitives
 /// (docs/numerics.md).
 template <bool kAny>
-[[gnu::noinline]] void stream_traverse(const GridView& g, Packet& p, Counters& n) {
+[[gnu::noinline]] void stream_traverse(const GridView& g, Packet& p, TraceCounts& n) {
   ActiveRays rays(g, p);
   if (!rays.any())
     return;

@@ -9,7 +9,7 @@ namespace grelha::GRELHA_ISA {
 
 /// Tests the primitives that stand in no grid since they are infinite.
 template <bool kAny>
-inline void test_infinite(const SceneView& scene, Packet& p, Counters& n) {
+inline void test_infinite(const SceneView& scene, Packet& p, TraceCounts& n) {
   const GeometryView& g = scene.geometry;
   InfiniteShapes::for_each([&]<class Shape>() __attribute__((always_inline)) {
     const typename Shape::Arrays& all = g.of<Shape>();
@@ -20,7 +20,7 @@ inline void test_infinite(const SceneView& scene, Packet& p, Counters& n) {
 
 /// Tests the triangles that lie in no grid.
 template <bool kAny>
-inline void test_outside(const Triangle::CellList& list, Packet& p, Counters& n) {
+inline void test_outside(const Triangle::CellList& list, Packet& p, TraceCounts& n) {
   for (std::uint32_t b = 0; b < list.first[1]; ++b) {
     const TriangleBlock& block = list.blocks[b];
     for (int i = 0; i < kBlock && block.a[0][i] == block.a[0][i]; ++i)
@@ -30,7 +30,7 @@ inline void test_outside(const Triangle::CellList& list, Packet& p, Counters& n)
 
 /// The few primitives that lie in no grid, each against all rays.
 template <bool kAny>
-inline void test_outside(const CellLists& lists, Packet& p, Counters& n) {
+inline void test_outside(const CellLists& lists, Packet& p, TraceCounts& n) {
   if (lists.of<Triangle>().first)
     test_outside<kAny>(lists.of<Triangle>(), p, n);
   ArrayShapes::for_each([&]<class Shape>() __attribute__((always_inline)) {
@@ -125,7 +125,7 @@ inline void each_grid(const SceneView& scene, const Packet& p, const Visit& visi
 
 /// The live rays of a packet through a grid.
 template <bool kAny>
-inline void search_grid(const GridView& g, Packet& p, const TraceOptions& options, Counters& n) {
+inline void search_grid(const GridView& g, Packet& p, const TraceOptions& options, TraceCounts& n) {
   const Starts starts = set_starts(g, p);
   p.error_bound = g.error_bound;
   if (starts.any_near)
@@ -145,7 +145,7 @@ template <bool kAny>
 [[gnu::noinline]] void trace_packet(const SceneView& scene,
                                     Packet& p,
                                     const TraceOptions& options,
-                                    Counters& n) {
+                                    TraceCounts& n) {
   prepare(p, scene.geometry, scene.geometry.of<Triangle>().count > 0);
   test_infinite<kAny>(scene, p, n);
   if (scene.outside.of<Sphere>().first)

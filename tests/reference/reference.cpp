@@ -14,9 +14,7 @@ void walk_closest(const SceneView& scene,
                   const Hits& hits,
                   const TraceOptions& settings,
                   TraceCounts& counts) {
-  Counters n;
-  reference::closest(scene, rays, settings.mailbox, n, hits);
-  reference::add(n, counts);
+  reference::closest(scene, rays, settings.mailbox, counts, hits);
 }
 
 void walk_occluded(const SceneView& scene,
@@ -24,9 +22,7 @@ void walk_occluded(const SceneView& scene,
                    std::uint8_t* blocked,
                    const TraceOptions& settings,
                    TraceCounts& counts) {
-  Counters n;
-  reference::occluded(scene, rays, settings.mailbox, n, blocked);
-  reference::add(n, counts);
+  reference::occluded(scene, rays, settings.mailbox, counts, blocked);
 }
 
 bool always() {

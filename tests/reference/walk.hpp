@@ -62,16 +62,16 @@ bool take(WalkedRay& r, std::uint32_t id) {
 }
 
 template <class Shape>
-bool is_new(std::uint32_t id, RayMailbox* box, Counters& n) {
+bool is_new(std::uint32_t id, RayMailbox* box, TraceCounts& n) {
   if (box && box->seen(id))
     return false;
-  ++n.tests[kNumber<Shape>];
+  count_tests<Shape>(n, 1);
   return true;
 }
 
 template <bool kAny>
 bool test_triangles(
-    WalkedRay& r, const CellLists& lists, std::size_t cell, RayMailbox* box, Counters& n) {
+    WalkedRay& r, const CellLists& lists, std::size_t cell, RayMailbox* box, TraceCounts& n) {
   const auto [first, end] = lists.of<Triangle>().blocks_of(cell);
   for (std::uint32_t b = first; b < end; ++b) {
     const TriangleBlock& block = lists.of<Triangle>().blocks[b];
@@ -84,7 +84,7 @@ bool test_triangles(
 
 template <bool kAny>
 bool test_lists(
-    WalkedRay& r, const CellLists& lists, std::size_t cell, RayMailbox* box, Counters& n) {
+    WalkedRay& r, const CellLists& lists, std::size_t cell, RayMailbox* box, TraceCounts& n) {
   bool over = lists.of<Triangle>().first && test_triangles<kAny>(r, lists, cell, box, n);
   ArrayShapes::for_each([&]<class Shape>() {
     const typename Shape::CellList& list = lists.of<Shape>();
@@ -96,7 +96,7 @@ bool test_lists(
 }
 
 template <bool kAny>
-bool test_planes(WalkedRay& r, const GeometryView& g, Counters& n) {
+bool test_planes(WalkedRay& r, const GeometryView& g, TraceCounts& n) {
   for (std::uint32_t p = 0; p < g.of<Plane>().count; ++p)
     if (is_new<Plane>(p, nullptr, n) && take<kAny>(r, g.ids.begin(PrimitiveKind::kPlane) + p))
       return true;
@@ -104,7 +104,7 @@ bool test_planes(WalkedRay& r, const GeometryView& g, Counters& n) {
 }
 
 template <bool kAny>
-bool walk_grid(WalkedRay& r, const GridView& g, RayMailbox* box, Counters& n) {
+bool walk_grid(WalkedRay& r, const GridView& g, RayMailbox* box, TraceCounts& n) {
   const DdaState<double> ray = to_grid(g, r.org, r.dir);
   double t0 = r.t_min;
   double t1 = r.hi;
@@ -142,7 +142,7 @@ bool walk_grid(WalkedRay& r, const GridView& g, RayMailbox* box, Counters& n) {
 
 /// All cells of a grid, one after the other.
 template <bool kAny>
-bool test_cells(WalkedRay& r, const GridView& g, RayMailbox* box, Counters& n) {
+bool test_cells(WalkedRay& r, const GridView& g, RayMailbox* box, TraceCounts& n) {
   const std::size_t cells = static_cast<std::size_t>(g.n[0]) * static_cast<std::size_t>(g.n[1]) *
                             static_cast<std::size_t>(g.n[2]);
   for (std::size_t cell = 0; cell < cells; ++cell)
@@ -176,7 +176,7 @@ inline bool load_ray(Ray ray, const GeometryView& g, WalkedRay& r) {
 }
 
 template <bool kAny>
-void trace_ray(const SceneView& scene, WalkedRay& r, RayMailbox* box, Counters& n) {
+void trace_ray(const SceneView& scene, WalkedRay& r, RayMailbox* box, TraceCounts& n) {
   if (test_planes<kAny>(r, scene.geometry, n) || test_lists<kAny>(r, scene.outside, 0, nullptr, n))
     return;
   for (int i = 0; i < scene.grid_count; ++i) {
@@ -201,7 +201,7 @@ inline Ray ray_of(const Rays& rays, std::size_t i) {
 /// Calls `take(i, ray, r)` for each ray of a view: as it came, and as it was walked.
 template <bool kAny, class Take>
 void trace_reference(
-    const SceneView& scene, const Rays& rays, bool mailbox, Counters& n, const Take& take) {
+    const SceneView& scene, const Rays& rays, bool mailbox, TraceCounts& n, const Take& take) {
   RayMailbox box;
   for (std::size_t i = 0; i < rays.count; ++i) {
     const Ray ray = ray_of(rays, i);
@@ -216,7 +216,7 @@ void trace_reference(
 
 /// The query loops of a Variant, see VariantLoops.
 inline void closest(
-    const SceneView& scene, const Rays& rays, bool mailbox, Counters& n, const Hits& hits) {
+    const SceneView& scene, const Rays& rays, bool mailbox, TraceCounts& n, const Hits& hits) {
   const auto store = [&](std::ptrdiff_t i, const Ray& ray, const WalkedRay& r) {
     const bool met = r.id != kNoPrimitive;
     if (hits.t)
@@ -234,7 +234,7 @@ inline void closest(
   trace_reference<false>(scene, rays, mailbox, n, store);
 }
 inline void occluded(
-    const SceneView& scene, const Rays& rays, bool mailbox, Counters& n, std::uint8_t* blocked) {
+    const SceneView& scene, const Rays& rays, bool mailbox, TraceCounts& n, std::uint8_t* blocked) {
   trace_reference<true>(
       scene, rays, mailbox, n, [&](std::ptrdiff_t i, const Ray&, const WalkedRay& r) {
         blocked[i] = r.id != kNoPrimitive;
