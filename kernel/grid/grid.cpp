@@ -26,6 +26,7 @@ GridView Grid::view() const {
   const std::size_t count = cell_count(cells);
   v.field_stride = distance_fields(count) > 1 ? static_cast<std::uint32_t>(count) : 0;
   v.pad = static_cast<float>(pad);
+  v.stretched = stretched;
   for (int a = 0; a < 3; ++a)
     set_axis(v, a);
   set_error_bounds(v);

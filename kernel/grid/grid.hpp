@@ -20,6 +20,7 @@ struct Grid {
   double pad = 0;                               ///< added around primitives
   /// corner (a float's value, so that walks subtract it exactly) and cell size
   double lo[3] = {}, cell[3] = {};
+  bool stretched = false;  ///< rays walk it one by one: slices of few long cells part no packet
   CellStore store;
   std::vector<std::uint8_t> distance;  ///< of cells, see distance_field.hpp
   std::uint64_t occupied = 0;

@@ -1,6 +1,7 @@
 #include "kernel/grid/grid_layout.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <mutex>
@@ -21,6 +22,17 @@ constexpr double kSmallShare = 8;  ///< any grid of a scene may hold an eighth o
 constexpr double kAlways = 4;
 /// primitives from which the number of references is estimated
 constexpr std::size_t kFirstProbes = 128, kMoreProbes = std::size_t{1} << 14;
+
+/// costs of a ray and of a cell on its way; 1 is that of a reference (measured: piles of paper)
+constexpr double kRay = 64, kVisit = 8;
+constexpr double kOpen = .01;  ///< of rays, which pass between piles
+/// references of the mean primitive from which cells may become longer than high, most counted
+constexpr double kReachFar = 16, kMostCounted = 1 << 13;
+constexpr std::size_t kMoreCells = 2;  ///< times those that the density asks for, at most
+constexpr double kClear = 1.5;         ///< times less cost, for packets are lost
+
+using Factors = std::array<double, 3>;  ///< times the cells of each axis that the density asks for
+constexpr Factors kCubes = {1, 1, 1};
 
 /// A cube root from + - * / alone, so that resolutions agree between machines; Newton's steps until
 /// they stop falling.
@@ -115,12 +127,12 @@ void set_corner(Grid& g, const Box& b, double (&extent)[3]) {
 }
 
 /// Cells of a grid whose corner and pad are known; returns how many.
-std::size_t divide(Grid& g, const double (&extent)[3], double per_length) {
+std::size_t divide(Grid& g, const double (&extent)[3], double per_length, const Factors& times) {
   std::size_t cells = 1;
   for (std::size_t a = 0; a < 3; ++a) {
     // Cells no smaller than 2 pad: one outlier a million scenes away makes a pad that would put
     // everything in every cell.
-    const double n = std::min(extent[a] * per_length + 1, extent[a] / (2 * g.pad));
+    const double n = std::min((extent[a] * per_length + 1) * times[a], extent[a] / (2 * g.pad));
     g.cells[a] = static_cast<std::uint32_t>(std::clamp(n, 1., kMostCells));
     g.cell[a] = extent[a] / g.cells[a];
     cells *= g.cells[a];
@@ -128,29 +140,36 @@ std::size_t divide(Grid& g, const double (&extent)[3], double per_length) {
   return cells;
 }
 
-/// True if the mean of so many primitives, evenly picked, stands in more than `most` cells.
-bool have_more(double most,
-               const Primitives& p,
-               std::span<const std::uint32_t> ids,
-               const Grid& g,
-               std::size_t probes) {
-  const CellFinder finder(p, g);
+/// So many primitives, evenly picked, or up to twice as many.
+std::vector<std::uint32_t> pick(std::span<const std::uint32_t> ids, std::size_t probes) {
   const std::size_t stride = std::max<std::size_t>(1, ids.size() / probes);
-  const std::size_t first = stride / 2;
-  const std::size_t probed = (ids.size() - first + stride - 1) / stride;
-  const double enough = most * static_cast<double>(probed);
-  std::uint64_t sum = 0;
-  for (std::size_t i = first; i < ids.size() && static_cast<double>(sum) <= enough; i += stride)
-    finder(ids[i], [&](std::size_t) { ++sum; });
-  return static_cast<double>(sum) > enough;
+  std::vector<std::uint32_t> picked;
+  for (std::size_t i = stride / 2; i < ids.size(); i += stride)
+    picked.push_back(ids[i]);
+  return picked;
 }
 
-/// The same. One of a few may be the largest of all: where these say so, many are asked.
+/// Cells that the mean primitive stands in; counting ends with more than `most`.
+double mean_references(double most,
+                       const Primitives& p,
+                       const std::vector<std::uint32_t>& ids,
+                       const Grid& g) {
+  const CellFinder finder(p, g);
+  const double count = static_cast<double>(ids.size());
+  std::uint64_t sum = 0;
+  for (std::size_t i = 0; i < ids.size() && static_cast<double>(sum) <= most * count; ++i)
+    finder(ids[i], [&](std::size_t) { ++sum; });
+  return static_cast<double>(sum) / count;
+}
+
+/// True if the mean primitive stands in more than `most` cells. One of a few may be the largest of
+/// all: where these say so, many are asked.
 bool have_more(double most,
                const Primitives& p,
                std::span<const std::uint32_t> ids,
                const Grid& g) {
-  return have_more(most, p, ids, g, kFirstProbes) && have_more(most, p, ids, g, kMoreProbes);
+  return mean_references(most, p, pick(ids, kFirstProbes), g) > most &&
+         mean_references(most, p, pick(ids, kMoreProbes), g) > most;
 }
 
 /// References that the mean one of `count` primitives may have. A heap of large ones, or of
@@ -160,6 +179,63 @@ double most_references(const Primitives& p, std::size_t count) {
   const double served =
       std::min(static_cast<double>(p.ids.end()), kSmallShare * static_cast<double>(count));
   return std::clamp(kMostInAll / served, kAlways, kMostReferences);
+}
+
+double half_surface(const double (&e)[3]) {
+  return e[0] * e[1] + e[1] * e[2] + e[2] * e[0];
+}
+
+/// What a ray through a grid is expected to cost, by some of its primitives; see layout_grid().
+struct RayCost {
+  const Primitives& p;
+  std::vector<std::uint32_t> picked;
+  double count;
+  double crossed[3];  ///< planes across an axis that a ray meets, over all of them
+
+  RayCost(const Primitives& all, std::span<const std::uint32_t> ids, const double (&extent)[3])
+      : p(all), picked(pick(ids, kFirstProbes)), count(static_cast<double>(ids.size())) {
+    double sum = 0;
+    for (const std::uint32_t id : picked) {
+      const Box b = p.box(id);
+      sum += half_surface({b.hi[0] - b.lo[0], b.hi[1] - b.lo[1], b.hi[2] - b.lo[2]});
+    }
+    const double surface = half_surface(extent);
+    const double met = sum / surface * count / static_cast<double>(picked.size());
+    for (std::size_t a = 0; a < 3; ++a)
+      crossed[a] =
+          (kOpen + (1 - kOpen) / (1 + met)) * extent[(a + 1) % 3] * extent[(a + 2) % 3] / surface;
+  }
+  double references(const Grid& g) const { return mean_references(kMostCounted, p, picked, g); }
+  double operator()(const Grid& g) const {
+    double visits = 1;
+    for (std::size_t a = 0; a < 3; ++a)
+      visits += (g.cells[a] - 1.) * crossed[a];
+    const double in_cell = references(g) * count / static_cast<double>(cell_count(g.cells));
+    return kRay + visits * (kVisit + in_cell);
+  }
+};
+
+/// Moves cells from axis to axis while that saves costs; kCubes, unless it saves clearly.
+Factors choose_factors(Grid g, const RayCost& cost, const double (&extent)[3], double per_length) {
+  const std::size_t most = kMoreCells * divide(g, extent, per_length, kCubes);
+  if (!(cost.references(g) > kReachFar))
+    return kCubes;
+  const double before = cost(g);
+  double least = before;
+  Factors best = kCubes;
+  for (Factors from = {}; from != best;) {
+    from = best;
+    for (std::size_t i = 0; i < 9; ++i) {
+      Factors moved = from;
+      moved[i / 3] *= 2;
+      moved[i % 3] /= 2;
+      if (divide(g, extent, per_length, moved) <= most && cost(g) < least) {
+        least = cost(g);
+        best = moved;
+      }
+    }
+  }
+  return kClear * least < before ? best : kCubes;
 }
 
 }  // namespace
@@ -182,11 +258,13 @@ Grid layout_grid(const Primitives& p,
   double extent[3];
   set_corner(g, b, extent);
   const double per_length = cells_per_length(extent, ids.size(), density);
-  std::size_t cells = divide(g, extent, per_length);
+  const Factors times = choose_factors(g, RayCost(p, ids, extent), extent, per_length);
+  g.stretched = times != kCubes;
+  std::size_t cells = divide(g, extent, per_length, times);
   const double most = most_references(p, ids.size());
   for (double coarser = per_length / 2; cells > kMostReferences && have_more(most, p, ids, g);
        coarser /= 2)
-    cells = divide(g, extent, coarser);
+    cells = divide(g, extent, coarser, times);
   return g;
 }
 

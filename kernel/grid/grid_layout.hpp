@@ -25,6 +25,10 @@ inline int thread_count_for(int threads, std::size_t work) {
 ///             At most 1024 cells an axis, none smaller than 2 pad. Cells are coarsened by halves
 ///             if primitives of a probe would stand in more than 64 cells on average, or all
 ///             primitives together in more than 2^22 (or 4 each).
+/// Stretch     Where the mean primitive would stand in more than 16 cells, as sheets do, these move
+///             from axis to axis by factors of two. A ray is expected to cost 64 + visits (8 +
+///             references of a cell). It crosses the planes of an axis by the area of the grid
+///             across it, on 1 / (1 + boxes met) of its way; a hundredth of rays go all of it.
 /// Guarantee   every primitive stands in each cell that its box grown by `pad` overlaps, unless the
 ///             cell lies beyond `pad` of its surface. In each cell spheres and cones ascend by id,
 ///             triangles stand as BlockOrder says. Same lists on every machine, by any number of

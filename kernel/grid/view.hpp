@@ -31,7 +31,8 @@ struct GridView {
   std::uint32_t field_stride = 0;
   int n[3] = {};  ///< cells per axis; x runs fastest
   double lo[3] = {}, cell[3] = {}, inv_cell[3] = {};
-  float pad = 0;  ///< added around primitives before they were put into cells
+  float pad = 0;           ///< added around primitives before they were put into cells
+  bool stretched = false;  ///< rays walk it one by one, see Grid
   float lo_f[3] = {}, hi_f[3] = {}, cell_f[3] = {}, inv_cell_f[3] = {};
 };
 

@@ -379,7 +379,7 @@ inline std::uint64_t packet_traverse(
 template <bool kAny>
 inline void traverse_packet(
     const GridView& g, Packet& p, int width, bool use_mailbox, TraceCounts& n) {
-  if (width == 1)
+  if (width == 1 || g.stretched)
     return stream_traverse<kAny>(g, p, n);
   const std::uint64_t live = p.live;
   p.live = width < p.size ? traverse_parts<kAny>(g, p, width, use_mailbox, n)

@@ -271,6 +271,7 @@ inline std::vector<std::pair<const char*, Scene>> agreement_meshes() {
   all.emplace_back("ball, three copies", many_times(turned_mesh(8, false), 3));
   all.emplace_back("four triangles, 1200 copies", many_times(random_triangles(5, 4), 1200));
   all.emplace_back("lattice", lattice_patch(8));
+  all.emplace_back("sheets", stacked_sheets(300));
   all.emplace_back("slivers", slivers(5, 200));
   return all;
 }

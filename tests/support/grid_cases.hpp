@@ -116,6 +116,7 @@ inline std::vector<Case> cases() {
           {"stadium", stadium(3, 300)},
           {"wide plain", crowd_on_a_wide_plain(3, 300)},
           {"lattice", lattice_patch(9)},
+          {"sheets", stacked_sheets(300)},
           {"towns", towns_in_a_desert(3, 3000)},
           {"tiny", placed(random_mixture(3, 300), 1e-6, {})},
           {"far", placed(random_mixture(3, 300), 2, far)}};

@@ -151,6 +151,16 @@ inline Scene flat_sheet(std::uint64_t seed, int n) {
   }
   return s;
 }
+/// Squares of a unit cube, one above the other.
+inline Scene stacked_sheets(int n) {
+  Scene s = empty_scene();
+  for (int i = 0; i < n; ++i) {
+    const float z = static_cast<float>(i) / static_cast<float>(n);
+    add_triangle(s, {0, 0, z}, {1, 0, z}, {1, 1, z});
+    add_triangle(s, {0, 0, z}, {1, 1, z}, {0, 1, z});
+  }
+  return s;
+}
 /// A square patch of triangles along the axes, corners on whole numbers: rays hit edges and
 /// vertices exactly.
 inline Scene lattice_patch(int n) {

@@ -117,6 +117,8 @@ Scene scene_of(const Case& c) {
     return soup(c.size);
   if (name == "clumps")
     return soup(c.size, 16);
+  if (name == "sheets")
+    return stacked_sheets(c.size);
   if (name == "towns")
     return towns_in_a_desert(5, c.size);
   std::ostringstream text;
@@ -159,6 +161,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes,
                                          Case{"tetra", 8},
                                          Case{"soup", 100000},
                                          Case{"clumps", 300000},
+                                         Case{"sheets", 10000},
                                          Case{"towns", 30000}));
 
 TEST(BuildingWithoutGrid, TakesWhatItSaid) {

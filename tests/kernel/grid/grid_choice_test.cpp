@@ -250,6 +250,48 @@ TEST(GridSize, SliversDoNotFillMemory) {
   EXPECT_GE(world.grids()[0].references, kSpikes * 4u) << "and no coarser than need be";
 }
 
+/// Cells as wide as high would hold a hundred sheets each.
+TEST(GridSize, StackedSheetsHaveFlatCells) {
+  constexpr int kSheets = 2000;
+  const Scene scene = stacked_sheets(kSheets);
+  const World world(scene, {});
+  ASSERT_EQ(world.grids().size(), 1u);
+  const GridStats g = world.grids()[0];
+  EXPECT_GE(g.cells[2], 10 * std::max(g.cells[0], g.cells[1]));
+  EXPECT_LE(g.references, 16 * g.occupied);
+}
+
+/// Nor would rays that go down together, a sheet each, see few in slices of few cells.
+TEST(GridSize, RaysTestFewOfStackedSheets) {
+  constexpr int kSheets = 2000, kRays = 1024;
+  const Scene scene = stacked_sheets(kSheets);
+  const World world(scene, {});
+  Random random(3);
+  std::vector<Ray> rays(kRays);
+  for (Ray& r : rays)
+    r = {at({.5f, .5f, .5f}, .4, random.direction()), at({0, 0, -1}, .5, random.direction())};
+  std::vector<Hit> hits(kRays);
+  TraceCounts counts;
+  closest(world, rays, hits, {}, &counts);
+  EXPECT_LE(counts.tests.triangle, 32u * kRays);
+}
+
+/// Where no primitive reaches far, the cells are those that the density asks for.
+TEST(GridSize, CellsOfSmallTrianglesAreCubes) {
+  Scene s = empty_scene();
+  Random random(3);
+  constexpr int kTriangles = 5000;
+  for (int i = 0; i < kTriangles; ++i) {
+    const Float3 p = random.point(1);
+    add_triangle(s, p, at(p, .05, random.direction()), at(p, .05, random.direction()));
+  }
+  const World world(s, {});
+  ASSERT_EQ(world.grids().size(), 1u);
+  const GridStats g = world.grids()[0];
+  for (const std::uint32_t n : g.cells)
+    EXPECT_NEAR(n, .7 * std::cbrt(kTriangles) + .5, 1);
+}
+
 TEST(GridSize, AnOutlierDoesNotPutEverythingEverywhere) {
   // The outlier's extent sets the pad; at one part in 16,777,216 * 128 of it a whole scene lies
   // within pad of itself.

@@ -56,6 +56,10 @@ Scene points() {
   return s;
 }
 
+Scene sheets() {
+  return stacked_sheets(300);
+}
+
 Scene lattice() {
   return lattice_patch(12);
 }
@@ -96,6 +100,7 @@ const std::vector<Case> kCases{
     {"mixture", kMixture, 1},
     {"flat", crowd<flat_sheet, 200>, 1, {0, .25f, 0}},
     {"lattice", lattice, 6, {6, 1, 6}},
+    {"sheets", sheets, 1, {.5f, .5f, .5f}},
     {"heap", crowd<heap, 20>, 1},
     {"needles", crowd<needles, 150>, 1},
     {"stadium", kStadium, 1},
