@@ -134,8 +134,8 @@ struct BlockSource {
   }
 };
 
-/// Replaces TraceCounts when no caller asks for them: clearing these took up to a twentieth of a call
-/// for one ray.
+/// Replaces TraceCounts when no caller asks for them: clearing these took up to a twentieth of a
+/// call for one ray.
 struct NoCounts {};
 
 /// Counts the rows of primitives that a ray is tested against.
