@@ -32,10 +32,11 @@ inline void occluded(const SceneView& scene,
 /// A ray by itself, and what it leaves out, or null.
 template <bool kAny>
 inline Hit trace_one(const SceneView& scene, const Ray& ray, const Filter* filter) {
-  if (!filter)
-    return trace_one<kAny>(scene, ray);
-  const RayFilter of_ray{&filter->skip, &filter->mask, filter->masks.data(), scene.copies};
-  return trace_one<kAny>(scene, ray, &of_ray);
+  RayFilter of_ray;
+  if (filter)
+    of_ray = {&filter->skip, &filter->mask, filter->masks.data(), scene.copies};
+  // one call of it: with two its parts were functions of their own
+  return trace_one<kAny>(scene, ray, filter ? &of_ray : nullptr);
 }
 inline Hit closest_one(const SceneView& scene, const Ray& ray, const Filter* filter) {
   return trace_one<false>(scene, ray, filter);

@@ -7,7 +7,7 @@ namespace grelha::GRELHA_ISA {
 
 /// As test_infinite(Packet&). Returns whether the search is over.
 template <bool kAny>
-inline bool test_infinite(const SceneView& scene, Single& r) {
+[[gnu::always_inline]] inline bool test_infinite(const SceneView& scene, Single& r) {
   const GeometryView& g = scene.geometry;
   bool over = false;
   InfiniteShapes::for_each([&]<class Shape>() __attribute__((always_inline)) {
