@@ -308,59 +308,27 @@ inline void start_from_slice(const Frustum& f, Packet& p, int slice) {
   });
 }
 
-template <bool kAny>
-inline std::uint64_t packet_traverse(
-    const GridView& g, Packet& p, int width, bool use_mailbox, TraceCounts& n);
-
 inline FrustumStats& stats_of(Packet& p, int width) {
   return width > kMiddle ? p.large_stats : width > kSmall ? p.middle_stats : p.small_stats;
 }
 
-/// The live rays of a packet in smaller ones of `rays` neighbours each; see packet_traverse().
+/// Takes the live rays of a packet, `width` at most, through a grid, each from p.start on, as far as
+/// they go together, if those before did. Returns false if they are to go on from p.start in smaller
+/// packets. Leaves `live` unchanged on return.
 template <bool kAny>
-inline std::uint64_t traverse_parts(
-    const GridView& g, Packet& p, int rays, bool use_mailbox, TraceCounts& n) {
-  const std::uint64_t live = p.live;
-  const int each = rays / kWidth<VFloat>;
-  std::uint64_t apart = 0;
-  for (int first = 0; first < p.groups; first += each)
-    if ((p.live = live & ((std::uint64_t{1} << each) - 1) << first) != 0)
-      apart |= packet_traverse<kAny>(g, p, rays, use_mailbox, n);
-  p.live = live;
-  return apart;
-}
-
-/// Splits a packet that does not go together into four; rays that do not there go one by one.
-template <bool kAny>
-inline std::uint64_t split_packet(
-    const GridView& g, Packet& p, int width, bool use_mailbox, TraceCounts& n) {
-  ++n.packets.packet_fallbacks;
-  if (width <= kSmall)
-    return p.live;
-  return traverse_parts<kAny>(g, p, width > kMiddle ? kMiddle : kSmall, use_mailbox, n);
-}
-
-/// Takes the live rays of a packet, `width` at most, through one grid, each from p.start on, as far
-/// as they go together, if those before did. Returns the groups whose rays are to go on by
-/// themselves, from p.start on. Leaves `live` unchanged on return.
-template <bool kAny>
-inline std::uint64_t packet_traverse(
+inline bool walk_together(
     const GridView& g, Packet& p, int width, bool use_mailbox, TraceCounts& n) {
   FrustumStats& stats = stats_of(p, width);
   if (!stats.should_try())
-    return split_packet<kAny>(g, p, width, use_mailbox, n);
-  const std::uint64_t live = p.live;
+    return false;
   Frustum f;
-  switch (bound_rays(g, p, f)) {
-    case Coherence::kMisses:
-      stats.record(1);
-      return 0;
-    case Coherence::kIncoherent:
-      stats.record(0);
-      return split_packet<kAny>(g, p, width, use_mailbox, n);
-    case Coherence::kTogether:
-      break;
+  const Coherence coherence = bound_rays(g, p, f);
+  if (coherence != Coherence::kTogether) {
+    const bool misses = coherence == Coherence::kMisses;
+    stats.record(misses ? 1 : 0);
+    return misses;
   }
+  const std::uint64_t live = p.live;
   PacketVisit<kAny> visit(g, f, p, width, use_mailbox, n);
   if (visit.start())
     walk_frustum(g, f, n, visit);
@@ -368,23 +336,40 @@ inline std::uint64_t packet_traverse(
   if (visit.split_at() >= 0) {
     stats.record(visit.saved());
     start_from_slice(f, p, visit.split_at());
-    return split_packet<kAny>(g, p, width, use_mailbox, n);
+    return false;
   }
   stats.record(1);
   ++n.packets.formed;
-  return 0;
+  return true;
 }
 
-/// All rays of a packet through one grid, from p.start on, `width` neighbours together.
+/// Rays of the packets that one falls apart into; 0: they go one by one.
+inline int parts_of(int width) {
+  return width > kMiddle ? kMiddle : width > kSmall ? kSmall : 0;
+}
+
+/// All rays of a packet through one grid, from p.start on: `width` neighbours together, then those
+/// that part in smaller packets, and the rest one by one.
 template <bool kAny>
 inline void traverse_packet(
     const GridView& g, Packet& p, int width, bool use_mailbox, TraceCounts& n) {
-  if (width == 1 || g.stretched)
-    return stream_traverse<kAny>(g, p, n);
   const std::uint64_t live = p.live;
-  p.live = width < p.size ? traverse_parts<kAny>(g, p, width, use_mailbox, n)
-                          : packet_traverse<kAny>(g, p, p.size, use_mailbox, n);
-  if (p.live != 0)
+  int rays = width == 1 || g.stretched ? 0 : width < p.size ? width : p.size;
+  std::uint64_t apart = live;
+  for (; rays > 0 && apart != 0; rays = parts_of(rays)) {
+    const std::uint64_t going = apart;
+    const int each = (rays + kWidth<VFloat> - 1) / kWidth<VFloat>;
+    apart = 0;
+    for (int first = 0; first < p.groups; first += each) {
+      p.live = going & ~std::uint64_t{0} >> (64 - each) << first;
+      if (p.live != 0 && !walk_together<kAny>(g, p, rays, use_mailbox, n)) {
+        apart |= p.live;
+        ++n.packets.packet_fallbacks;
+      }
+    }
+  }
+  p.live = apart;
+  if (apart != 0)
     stream_traverse<kAny>(g, p, n);
   p.live = live;
 }
