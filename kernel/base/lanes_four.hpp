@@ -45,6 +45,10 @@ inline Four magnitude(const Four& a) {
   return reinterpret_cast<Four>(reinterpret_cast<FourInts>(a) & 0x7FFFFFFF);
 }
 
+inline Four select(const FourInts& mask, const Four& a, const Four& b) {
+  return mask ? a : b;
+}
+
 /// Without fractions.
 inline FourInts to_ints(const Four& a) {
   return __builtin_convertvector(a, FourInts);

@@ -46,10 +46,12 @@ inline unsigned boxes_inside(const Frustum& f, const BlockBoxes& boxes) {
   for (int a = 0; a < 3; ++a) {
     const float base = p.base ? p.base[a] : 0.f;
     const VFloat org = load<VFloat>(p.org[a] + i);
-    const VFloat inverse = load<VFloat>(p.inverse[a] + i);
-    const VFloat x = (VFloat(boxes.side[a][k] - base) - org) * inverse;
-    const VFloat y = (VFloat(boxes.side[a + 3][k] - base) - org) * inverse;
-    clip_to_slab(min(x, y), max(x, y), enter, leave);
+    clip_to_slab(VFloat(boxes.side[a][k] - base),
+                 VFloat(boxes.side[a + 3][k] - base),
+                 org,
+                 load<VFloat>(p.inverse[a] + i),
+                 enter,
+                 leave);
   }
   return bits(enter <= leave);
 }

@@ -49,26 +49,19 @@ template <class Real>
   const Real least = min_advance(dir[0], dir[1], dir[2]);
   const Real cells(g.inv_cell_f[a]);
   c.place[a] = (org[a] - Real(g.lo_f[a])) * cells;
-  const Real tiny = select(dir[a] < Real(0), Real(0) - least, least);
-  c.speed[a] = select(magnitude(dir[a]) < least, tiny, dir[a]) * cells;
+  c.speed[a] = with_advance(dir[a], least) * cells;
   c.inverse[a] = Real(1) / c.speed[a];
-}
-
-inline double clamp_from_zero(double d, double least) {
-  if (d < 0)
-    return d > -least ? -least : d;
-  return d < least ? least : d;
 }
 
 /// One ray in double, whose cells are those that the builder gives to points (cell_of in grid.hpp).
 template <class Number>
 inline DdaState<double> to_grid(const GridView& g, const Number (&org)[3], const float (&dir)[3]) {
   DdaState<double> c{};
-  // no float's part of another: on its way from afar a ray strays by as much
+  // less than what a float can be beside another: on its way from afar a ray strays by as much
   const double least = 1e-80 * static_cast<double>(max_abs(max_abs(dir[0], dir[1]), dir[2]));
   for (int a = 0; a < 3; ++a) {
     c.place[a] = (static_cast<double>(org[a]) - g.lo[a]) * g.inv_cell[a];
-    c.speed[a] = clamp_from_zero(static_cast<double>(dir[a]), least) * g.inv_cell[a];
+    c.speed[a] = with_advance(static_cast<double>(dir[a]), least) * g.inv_cell[a];
     c.inverse[a] = 1 / c.speed[a];
   }
   return c;
@@ -76,11 +69,8 @@ inline DdaState<double> to_grid(const GridView& g, const Number (&org)[3], const
 
 /// The part of [t0, t1] inside the box of all cells; empty when t0 > t1.
 inline void clip_to_grid(const GridView& g, const DdaState<double>& c, double& t0, double& t1) {
-  for (int a = 0; a < 3; ++a) {
-    const double x = c.t_at(a, 0);
-    const double y = c.t_at(a, g.n[a]);
-    clip_to_slab(min(x, y), max(x, y), t0, t1);
-  }
+  for (int a = 0; a < 3; ++a)
+    clip_to_slab(0., double(g.n[a]), c.place[a], c.inverse[a], t0, t1);
 }
 
 /// The cells that rays from t = begin to t = best start in. Returns those that come to the grid.
@@ -97,10 +87,7 @@ template <class Real>
   const Mask<Real> search = best > begin;
   for (int a = 0; a < 3; ++a) {
     set_dda(g, org, dir, a, c);
-    const Real size(static_cast<float>(g.n[a]));
-    const Real x = c.t_at(a, Real(0));
-    const Real y = c.t_at(a, size);
-    clip_to_slab(min(x, y), max(x, y), t0, t1);
+    clip_to_slab(Real(0), Real(static_cast<float>(g.n[a])), c.place[a], c.inverse[a], t0, t1);
   }
   for (int a = 0; a < 3; ++a)
     cell[a] = c.cell_at(a, t0, g.n[a]);
@@ -215,11 +202,10 @@ class CellDda {
   [[gnu::always_inline]] void set_dda(const Single& r) {
     const Four dir = four(r.dir, 0);
     const Four least = four(min_advance(r.dir[0], r.dir[1], r.dir[2]));
-    const Four tiny = dir < four(0) ? four(0) - least : least;
     const Four cells = four(g_.inv_cell_f, 1);
     const FourInts n{g_.n[0], g_.n[1], g_.n[2], 1};
     place_ = (four(r.org, 0) - four(g_.lo_f, 0)) * cells;
-    speed_ = (magnitude(dir) < least ? tiny : dir) * cells;
+    speed_ = with_advance(dir, least) * cells;
     inverse_ = four(1) / speed_;
     inverse_[3] = kNever;
     last_ = to_floats(n) - four(1);

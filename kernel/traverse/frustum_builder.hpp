@@ -55,13 +55,9 @@ class FrustumBuilder {
       VFloat t1 = load<VFloat>(p_.best + i);
       const VFloat least = min_advance(p_, i);
       for (int a = 0; a < 3; ++a) {
-        const VFloat d = load<VFloat>(p_.dir[a] + i);
         const VFloat o = load<VFloat>(p_.org[a] + i);
-        const VFloat inv = VFloat(1) / select(magnitude(d) < least, least, d);
-        const VFloat x = (VFloat(g_.lo_f[a]) - o) * inv;
-        const VFloat y = (VFloat(g_.hi_f[a]) - o) * inv;
-        t0 = max(min(x, y), t0);
-        t1 = min(max(x, y), t1);
+        const VFloat inverse = VFloat(1) / with_advance(load<VFloat>(p_.dir[a] + i), least);
+        clip_to_slab(VFloat(g_.lo_f[a]), VFloat(g_.hi_f[a]), o, inverse, t0, t1);
       }
       const Mask<VFloat> meets = t0 <= t1;
       store(enter_ + i, t0);

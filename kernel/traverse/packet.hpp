@@ -6,6 +6,7 @@
 #include "kernel/grid/view.hpp"
 #include "kernel/shapes/exact_hits.hpp"
 #include "kernel/traverse/ray_filter.hpp"
+#include "kernel/traverse/slab.hpp"
 #include "kernel/traverse/tolerances.hpp"
 
 namespace grelha::GRELHA_ISA {
@@ -267,7 +268,7 @@ inline void set_slabs(Packet& p, int i) {
   const VFloat least = min_advance(p, i);
   for (int a = 0; a < 3; ++a) {
     const VFloat d = load<VFloat>(p.dir[a] + i);
-    const VFloat inverse = VFloat(1) / select(magnitude(d) < least, least, d);
+    const VFloat inverse = VFloat(1) / with_advance(d, least);
     const auto low = static_cast<float>(a);
     store(p.inverse[a] + i, inverse);
     store_words(p.near[a] + i, to_words(select(inverse < VFloat(0), VFloat(low + 3), VFloat(low))));

@@ -138,7 +138,7 @@ inline float inverse_length(const PacketRay& r) {
 inline void set_inverse(Single& r, const Vec3<float>& d) {
   const Four least = four(min_advance(d.x, d.y, d.z));
   const Four dir{d.x, d.y, d.z, 1};
-  const Four inverse = four(1) / (magnitude(dir) < least ? least : dir);
+  const Four inverse = four(1) / with_advance(dir, least);
   const FourInts low{0, 1, 2, 0};
   store(r.inverse, inverse);
   store(r.near, inverse < four(0) ? low + 3 : low);

@@ -77,12 +77,8 @@ inline Real error_bound_in(const SceneView& scene, const Vec3<Real>& org) {
 inline float entry(const GridView& g, const float (&org)[3], const float (&dir)[3], float t_min) {
   float t0 = t_min;
   float t1 = kInfinity;
-  for (int a = 0; a < 3; ++a) {
-    const float inv = 1 / dir[a];
-    const float x = (g.lo_f[a] - org[a]) * inv;
-    const float y = (g.hi_f[a] - org[a]) * inv;
-    clip_to_slab(min(x, y), max(x, y), t0, t1);
-  }
+  for (int a = 0; a < 3; ++a)
+    clip_to_slab(g.lo_f[a], g.hi_f[a], org[a], 1 / dir[a], t0, t1);
   return t0 <= t1 ? t0 : kInfinity;
 }
 
