@@ -12,13 +12,15 @@ namespace {
 /// Calls work(points, first) for copies of the points, a part at a time: the kernel wants them
 /// without gaps, and a copy of all could be too large.
 template <class Work>
-void each_part(const Points<float>& all, const Work& work) {
+void each_part(const PointArray& all, const Work& work) {
   constexpr std::size_t kPart = std::size_t{1} << 20;
   std::vector<Float3> points;
-  for (std::size_t first = 0; first < all.count(); first += kPart) {
-    points.resize(std::min(kPart, all.count() - first));
-    for (std::size_t i = 0; i < points.size(); ++i)
-      points[i] = all.point(first + i);
+  for (std::size_t first = 0; first < all.count; first += kPart) {
+    points.resize(std::min(kPart, all.count - first));
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const auto at = [&](std::size_t a) { return static_cast<float>(all.at(first + i, a)); };
+      points[i] = {at(0), at(1), at(2)};
+    }
     work(std::span<const Float3>(points), first);
   }
 }
@@ -56,7 +58,7 @@ grelha_status grelha_contains(const grelha_world* world,
   using namespace grelha::c;
   return guarded([&] {
     const grelha::World& asked = world_of(world);
-    const Points<float> all(points, stride, count, "points");
+    const grelha::PointArray all(points, stride, count, "points");
     if (count > 0)
       expect_there(inside, "inside");
     const grelha::QueryOptions options{.threads = expect_threads(threads)};
@@ -78,7 +80,7 @@ grelha_status grelha_closest_points(const grelha_world* world,
   using namespace grelha::c;
   return guarded([&] {
     const grelha::World& asked = world_of(world);
-    const Points<float> all(points, stride, count, "points");
+    const grelha::PointArray all(points, stride, count, "points");
     if (!(radius >= 0))
       refuse("radius", "0 or more", std::to_string(radius));
     const grelha::QueryOptions options{.threads = expect_threads(threads)};
@@ -100,7 +102,7 @@ grelha_status grelha_signed_distances(const grelha_world* world,
   using namespace grelha::c;
   return guarded([&] {
     const grelha::World& asked = world_of(world);
-    const Points<float> all(points, stride, count, "points");
+    const grelha::PointArray all(points, stride, count, "points");
     if (count > 0)
       expect_there(distance, "distance");
     const grelha::QueryOptions options{.threads = expect_threads(threads)};

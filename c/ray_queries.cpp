@@ -241,7 +241,7 @@ grelha_status grelha_each_hit(const grelha_world* world,
         return visit(context, i, hit.t, hit.id) != 0;
       };
       const grelha::Filter filter{.skip = stream.skip ? stream.skip[i] : grelha::kNoPrimitive,
-                                  .masks = world->masks,
+                                  .masks = world->masks(),
                                   .mask = stream.mask ? stream.mask[i] : std::uint8_t{255}};
       grelha::all_hits(asked, ray_of(stream, i), visit_hit, filter);
     }

@@ -1,34 +1,62 @@
 #pragma once
-// Points from arrays of any stride, of floats or doubles, as the arrays that scenes refer to.
+// Points in arrays of a caller, of any stride, of floats or doubles.
 
 #include <array>
+#include <concepts>
 #include <cstddef>
-#include <cstdint>
+#include <cstring>
 #include <limits>
 #include <span>
-#include <vector>
 
 #include "grelha/geometry.hpp"
 
 namespace grelha {
 
-/// Coordinates of points, each axis by itself: a point of the caller is (x, y, z) + offset.
-struct Coordinates {
-  std::vector<float> x, y, z;
-  std::array<double, 3> offset{};  ///< scene units
+/// Points of a caller, each x y z, at any address. They are referred to, not copied.
+struct PointArray {
+  const char* data = nullptr;      ///< x of the first point
+  std::size_t count = 0;           ///< number of points
+  std::ptrdiff_t stride = 0;       ///< bytes from one point to the next
+  std::ptrdiff_t axis_stride = 0;  ///< bytes from x to y and from y to z
+  bool in_double = false;          ///< the numbers are doubles, else floats
+  const char* name = "points";     ///< what errors call the array
+
+  PointArray() = default;  ///< none
+  /// `n` points of floats or doubles whose x y z follow each other, `bytes` from one to the next.
+  /// Throws std::invalid_argument for null and for a stride of 0, unless there are no points.
+  template <std::floating_point Number>
+  PointArray(const Number* points, std::ptrdiff_t bytes, std::size_t n, const char* called)
+      : data(reinterpret_cast<const char*>(points)),
+        count(n),
+        stride(bytes),
+        axis_stride(sizeof(Number)),
+        in_double(sizeof(Number) == sizeof(double)),
+        name(called) {
+    expect_array();
+  }
+  /// Points that follow each other.
+  explicit PointArray(std::span<const Float3> points)
+      : PointArray(reinterpret_cast<const float*>(points.data()),
+                   sizeof(Float3),
+                   points.size(),
+                   "points") {}
+
+  /// One coordinate of point i.
+  double at(std::size_t i, std::size_t axis) const {
+    const char* const from = data + static_cast<std::ptrdiff_t>(i) * stride +
+                             static_cast<std::ptrdiff_t>(axis) * axis_stride;
+    return in_double ? number<double>(from) : number<float>(from);
+  }
+
+ private:
+  void expect_array() const;
+  template <class Number>
+  static double number(const char* from) {
+    Number value;
+    std::memcpy(&value, from, sizeof value);
+    return value;
+  }
 };
-
-/// Copies `count` points, each x y z, that lie `stride` bytes apart, at any address. The offset is
-/// 0. Throws std::invalid_argument if `points` is null and `count` is not 0.
-Coordinates coordinates_of(const float* points, std::ptrdiff_t stride, std::size_t count);
-/// The same of doubles. The offset is that of their PointBounds. It is subtracted in double, then
-/// the difference is rounded to float. Rays and points of queries must have it subtracted too.
-Coordinates coordinates_of(const double* points, std::ptrdiff_t stride, std::size_t count);
-
-/// Copies the vertices of a mesh, and the three vertices of each face, counter-clockwise from the
-/// front. The triangles have no materials and no normals.
-Triangles triangles_of(std::span<const Float3> vertices,
-                       std::span<const std::array<std::uint32_t, 3>> faces);
 
 /// The bounding box of points, in scene units.
 class PointBounds {

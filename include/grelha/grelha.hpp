@@ -5,7 +5,8 @@
 /// `grelha::kernel`.
 ///
 /// Fill in a grelha::Scene, or a grelha::SceneSpans over arrays of your own; build a grelha::World
-/// from it; ask with grelha::closest() and grelha::occluded(), or grelha::render() a picture.
+/// from it, or a grelha::OwningWorld, which keeps it. Ask with grelha::closest() and
+/// grelha::occluded(), or grelha::render() a picture.
 
 #include "grelha/all_hits.hpp"
 #include "grelha/camera.hpp"
@@ -13,6 +14,7 @@
 #include "grelha/distance.hpp"
 #include "grelha/geometry.hpp"
 #include "grelha/image.hpp"
+#include "grelha/owning_world.hpp"
 #include "grelha/query.hpp"
 #include "grelha/render.hpp"
 #include "grelha/scene_spans.hpp"

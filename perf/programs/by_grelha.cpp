@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "grelha/coordinates.hpp"
+#include "grelha/owning_world.hpp"
 #include "grelha/query.hpp"
 #include "perf/programs/programs.hpp"
 
@@ -8,8 +8,8 @@ namespace grelha::perf::by_grelha {
 
 // program: ambient occlusion
 std::vector<float> ambient_occlusion(const Mesh& mesh) {
-  Scene scene;
-  scene.geometry.triangles = triangles_of(mesh.vertices, mesh.faces);
+  const auto triangles = triangles_of<std::uint32_t>(mesh.faces, mesh.vertices.size());
+  const Scene scene = scene_of(PointArray(mesh.vertices), triangles);
   const World world(scene, {.threads = 1});
   std::vector<Ray> rays;
   for (std::uint32_t face = 0; face < mesh.faces.size(); ++face) {
@@ -55,8 +55,8 @@ static float radiance(const World& world, Ray ray, std::uint64_t number) {
 }
 
 std::vector<float> path_trace(const Mesh& mesh, const View& view) {
-  Scene scene;
-  scene.geometry.triangles = triangles_of(mesh.vertices, mesh.faces);
+  const auto triangles = triangles_of<std::uint32_t>(mesh.faces, mesh.vertices.size());
+  const Scene scene = scene_of(PointArray(mesh.vertices), triangles);
   const World world(scene, {.threads = 1});
   std::vector<float> pixels(view.width * view.height);
   for (std::size_t i = 0; i < pixels.size(); ++i)
@@ -66,8 +66,8 @@ std::vector<float> path_trace(const Mesh& mesh, const View& view) {
 
 // end
 std::vector<Picked> pick(const Mesh& mesh, const View& view, std::size_t clicks) {
-  Scene scene;
-  scene.geometry.triangles = triangles_of(mesh.vertices, mesh.faces);
+  const auto triangles = triangles_of<std::uint32_t>(mesh.faces, mesh.vertices.size());
+  const Scene scene = scene_of(PointArray(mesh.vertices), triangles);
   const World world(scene, {.threads = 1});
   std::vector<Picked> picked;
   for (std::size_t i = 0; i < clicks; ++i) {

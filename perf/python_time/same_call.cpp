@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "grelha/coordinates.hpp"
+#include "grelha/owning_world.hpp"
 #include "grelha/query.hpp"
 
 namespace {
@@ -45,9 +45,10 @@ int main(int argc, char** argv) {
     return 2;
   const std::string folder = argv[1];
   const int rounds = std::atoi(argv[2]);
-  Scene scene;
-  scene.geometry.triangles = triangles_of(rows<Float3>(folder + "/vertices"),
-                                          rows<std::array<std::uint32_t, 3>>(folder + "/faces"));
+  const auto vertices = rows<Float3>(folder + "/vertices");
+  const auto faces = rows<std::array<std::uint32_t, 3>>(folder + "/faces");
+  const OffsetScene scene =
+      scene_of(PointArray(vertices), triangles_of<std::uint32_t>(faces, vertices.size()));
   const World world(scene, {});
   const auto org = rows<Float3>(folder + "/origins"), dir = rows<Float3>(folder + "/directions");
   const auto t = std::make_unique_for_overwrite<float[]>(org.size());

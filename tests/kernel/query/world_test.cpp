@@ -2,11 +2,15 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
+#include <span>
 #include <stdexcept>
+#include <string>
+#include <utility>
 
 #include "grelha/all_hits.hpp"
-#include "grelha/coordinates.hpp"
 #include "grelha/distance.hpp"
+#include "grelha/owning_world.hpp"
 #include "tests/support/brute_force.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/same_grids.hpp"
@@ -39,39 +43,135 @@ TEST(Geometry, NeedsNoMaterial) {
   EXPECT_THROW(World(bare, {}), std::invalid_argument);
 }
 
-TEST(Coordinates, OfAnyStrideAreTheCallers) {
+using Faces = std::vector<std::array<std::uint32_t, 3>>;
+OffsetScene scene_of(const PointArray& points, const Faces& faces) {
+  return grelha::scene_of(points, triangles_of<std::uint32_t>(faces, points.count));
+}
+
+TEST(OwningWorld, CopiesPointsOfAnyStride) {
   const struct {
     char tag;
     float at[3];
     char end;
   } points[2] = {{0, {1, 2, 3}, 0}, {0, {4, 5, 6}, 0}};
-  const Coordinates found = coordinates_of(points[0].at, sizeof points[0], 2);
-  EXPECT_EQ(found.x, (std::vector<float>{1, 4}));
-  EXPECT_EQ(found.y, (std::vector<float>{2, 5}));
-  EXPECT_EQ(found.z, (std::vector<float>{3, 6}));
+  const OffsetScene found = scene_of({points[0].at, sizeof points[0], 2, "points"}, {{0, 1, 0}});
+  EXPECT_EQ(found.geometry.triangles.x, (std::vector<float>{1, 4}));
+  EXPECT_EQ(found.geometry.triangles.y, (std::vector<float>{2, 5}));
+  EXPECT_EQ(found.geometry.triangles.z, (std::vector<float>{3, 6}));
+  EXPECT_EQ(found.geometry.triangles.b, (std::vector<std::uint32_t>{1}));
   EXPECT_EQ(found.offset, (std::array<double, 3>{}));
-  const Coordinates back = coordinates_of(points[1].at, -static_cast<int>(sizeof points[0]), 2);
-  EXPECT_EQ(back.x, (std::vector<float>{4, 1}));
-  EXPECT_THROW(coordinates_of(static_cast<const float*>(nullptr), 12, 1), std::invalid_argument);
+  const std::ptrdiff_t back = -static_cast<int>(sizeof points[0]);
+  EXPECT_EQ(scene_of({points[1].at, back, 2, "points"}, {}).geometry.triangles.x,
+            (std::vector<float>{4, 1}));
 }
 
-TEST(Coordinates, OfSurveysKeepTheirDigits) {
-  const double points[] = {512345.125, 5412345.5, 81.0625, 512352.375, 5412349.75, 80.5};
-  const Coordinates found = coordinates_of(points, 3 * sizeof(double), 2);
+TEST(OwningWorld, KeepsTheDigitsOfSurveys) {
+  // what no triangle names has no part in the offset
+  const double points[] = {
+      512345.125, 5412345.5, 81.0625, 512352.375, 5412349.75, 80.5, 1e300, NAN, 0};
+  const OffsetScene found = scene_of({points, 24, 3, "points"}, {{0, 1, 0}});
+  const Triangles& t = found.geometry.triangles;
   for (std::size_t i = 0; i < 2; ++i) {
-    EXPECT_EQ(found.x[i] + found.offset[0], points[3 * i]);
-    EXPECT_EQ(found.y[i] + found.offset[1], points[3 * i + 1]);
-    EXPECT_EQ(found.z[i] + found.offset[2], points[3 * i + 2]);
+    EXPECT_EQ(t.x[i] + found.offset[0], points[3 * i]);
+    EXPECT_EQ(t.y[i] + found.offset[1], points[3 * i + 1]);
+    EXPECT_EQ(t.z[i] + found.offset[2], points[3 * i + 2]);
   }
   EXPECT_NE(found.offset[1], 0);
+  const auto offset_of = [](const double* of, std::size_t count) {
+    return scene_of({of, 24, count, "points"}, {{0, static_cast<std::uint32_t>(count) - 1, 0}})
+        .offset;
+  };
   // near the origin floats resolve a millionth of the size, whether they are exact or not
   const double near[] = {.1, 7, -3, .2, 9, -3};
-  EXPECT_EQ(coordinates_of(near, 24, 2).offset, (std::array<double, 3>{}));
+  EXPECT_EQ(offset_of(near, 2), (std::array<double, 3>{}));
   const double far[] = {.1, 9, -3, .2, 11, -3};
-  EXPECT_EQ(coordinates_of(far, 24, 2).offset, (std::array<double, 3>{0, 8, -4}));
+  EXPECT_EQ(offset_of(far, 2), (std::array<double, 3>{0, 8, -4}));
+  const float floats[] = {1e6f, 0, 0, 1e6f + 1, 0, 0};
+  EXPECT_EQ(scene_of({floats, 12, 2, "points"}, {{0, 1, 0}}).offset, (std::array<double, 3>{}));
   const double same[] = {1e17 + 16, .1, 0};
-  EXPECT_NEAR(coordinates_of(same, 24, 1).offset[0], 1e17, 1e9);
+  EXPECT_NEAR(offset_of(same, 1)[0], 1e17, 1e9);
   EXPECT_EQ(PointBounds().offset(), (std::array<double, 3>{}));
+}
+
+/// What a call throws.
+template <class Error, class Call>
+std::string error_of(const Call& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "nothing";
+}
+
+TEST(OwningWorld, SaysWhichNumberIsBad) {
+  const float points[] = {0, 0, 0, 1, 0, 0, 0, INFINITY, 0};
+  const PointArray three(points, 12, 3, "vertices");
+  EXPECT_EQ(error_of<BadNumber>([&] {
+              scene_of(three, {{0, 1, 1}, {0, 3, 1}});
+            }),
+            "indices: expected numbers below 3, found 3 in triangle 1");
+  const std::array<std::int64_t, 3> negative[] = {{0, 1, -1}};
+  EXPECT_THROW(triangles_of<std::int64_t>(negative, 3), BadNumber);
+  EXPECT_EQ(error_of<BadNumber>([&] {
+              scene_of(three, {{0, 1, 2}});
+            }),
+            "vertices: expected finite numbers within 1e18, found inf in element 2");
+  const double radii[] = {1, 1e-60};
+  EXPECT_EQ(error_of<BadNumber>([&] { spheres_of<double>(radii); }),
+            "radii: expected numbers above 0 and within 1e18, found 0.000000 in element 1");
+  const auto one = spheres_of<double>({radii, 1});
+  EXPECT_THROW(grelha::scene_of(three, one), std::invalid_argument);
+  EXPECT_THROW(grelha::scene_of(three, random_mixture(1, 20).geometry), std::invalid_argument);
+  Geometry both = spheres_of<float>(std::array{1.f});
+  both.triangles.a = both.triangles.b = both.triangles.c = {0};
+  EXPECT_THROW(grelha::scene_of({points, 12, 1, "points"}, both), std::invalid_argument);
+  Geometry beyond;
+  beyond.triangles.a = beyond.triangles.b = beyond.triangles.c = {3};
+  EXPECT_THROW(grelha::scene_of(three, beyond), std::invalid_argument);
+  EXPECT_THROW(PointArray(points, 0, 1, "points"), std::invalid_argument);
+  EXPECT_THROW(PointArray(static_cast<const float*>(nullptr), 12, 1, "points"),
+               std::invalid_argument);
+}
+
+TEST(OwningWorld, MovesOrStaysAsItWas) {
+  const double corners[] = {1e7, 0, 0, 1e7 + 1, 0, 0, 1e7, 1, 0};
+  const double higher[] = {1e7, 0, 2, 1e7 + 1, 0, 2, 1e7, 1, 2};
+  OwningWorld world(scene_of({corners, 24, 3, "points"}, {{0, 1, 2}}), {});
+  const std::array<double, 3> offset = world.scene().offset;
+  const Ray down{{static_cast<float>(1e7 + .25 - offset[0]), .25f, 9}, {0, 0, -1}};
+  world.move({higher, 24, 3, "points"}, {});
+  EXPECT_EQ(world.scene().offset, offset);
+  EXPECT_EQ(closest(world.world(), down).t, 7);
+  const PointArray back(corners, 24, 3, "points");
+  EXPECT_EQ(error_of<std::invalid_argument>([&] {
+              world.move({corners, 24, 2, "points"}, {});
+            }),
+            "count: expected as many points as before, 3, found 2");
+  EXPECT_THROW(world.move(back, {.threads = -1}), std::invalid_argument);
+  EXPECT_THROW(world.move(back, {.progress = [](double) { return false; }}), Stopped);
+  EXPECT_EQ(closest(world.world(), down).t, 7);
+  EXPECT_EQ(world.scene().geometry.triangles.z, (std::vector<float>(3, 2)));
+  // floats count from the offset
+  const Float3 local[] = {{0, 0, 3}, {1, 0, 3}, {0, 1, 3}};
+  world.move(PointArray(local), {});
+  EXPECT_EQ(closest(world.world(), {{.25f, .25f, 9}, {0, 0, -1}}).t, 6);
+  const OwningWorld elsewhere = std::move(world);
+  EXPECT_EQ(closest(elsewhere.world(), {{.25f, .25f, 9}, {0, 0, -1}}).t, 6);
+}
+
+TEST(OwningWorld, HasAMaskForEachPrimitiveOrNone) {
+  const Float3 centers[] = {{0, 0, 0}, {0, 0, 3}};
+  const float radii[] = {1, 1};
+  OwningWorld world(grelha::scene_of(PointArray(centers), spheres_of<float>(radii)), {});
+  const std::uint8_t masks[] = {1, 0, 1};
+  world.set_masks({masks, 2});
+  EXPECT_EQ(world.masks().size(), 2u);
+  EXPECT_EQ(error_of<std::invalid_argument>([&] { world.set_masks(masks); }),
+            "count: expected 0 or 2, found 3");
+  EXPECT_EQ(world.masks()[1], 0);
+  world.set_masks({});
+  EXPECT_TRUE(world.masks().empty());
 }
 
 /// The coordinates of a kind that move.
