@@ -1,7 +1,6 @@
 #include "src/arrays.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <stdexcept>
 
 namespace grelha::python {
@@ -46,11 +45,11 @@ py::array repeated(const py::array& array, const Shape& shape) {
   return (*to)(array, axes);
 }
 
+}  // namespace
+
 Shape shape_of(const py::array& array) {
   return {array.shape(), array.shape() + array.ndim()};
 }
-
-}  // namespace
 
 std::size_t size_of(const Shape& shape) {
   std::size_t count = 1;
@@ -86,8 +85,7 @@ std::string text_of(py::handle given) {
   if (!py::isinstance<py::array>(given))
     return std::string(py::str(py::type::of(given).attr("__name__")));
   const auto array = py::reinterpret_borrow<py::array>(given);
-  const Shape shape(array.shape(), array.shape() + array.ndim());
-  return std::string(py::str(array.dtype())) + " array of shape " + text_of(shape);
+  return std::string(py::str(array.dtype())) + " array of shape " + text_of(shape_of(array));
 }
 
 void wrong_type(const char* name, const std::string& what, py::handle given) {
@@ -114,22 +112,23 @@ Triples::Triples(py::handle given, const char* name)
   if (all.empty() || all.back() != 3)
     wrong_value(name, "shape (..., 3)", text_of(all));
   shape_.assign(all.begin(), all.end() - 1);
+  points_.name = name;
   look();
 }
 
 void Triples::look() {
-  count_ = size_of(shape_);
-  rows_ = shape_.size() > 1 ? flattened(array_, shape_, count_) : array_;
-  in_double_ = rows_.itemsize() == 8;
-  data_ = static_cast<const char*>(rows_.data());
-  axis_stride_ = rows_.strides(rows_.ndim() - 1);
-  stride_ = rows_.ndim() > 1 ? rows_.strides(rows_.ndim() - 2) : 0;
+  points_.count = size_of(shape_);
+  rows_ = shape_.size() > 1 ? flattened(array_, shape_, points_.count) : array_;
+  points_.in_double = rows_.itemsize() == 8;
+  points_.data = static_cast<const char*>(rows_.data());
+  points_.axis_stride = rows_.strides(rows_.ndim() - 1);
+  points_.stride = rows_.ndim() > 1 ? rows_.strides(rows_.ndim() - 2) : 0;
 }
 
 void Triples::repeat(const Shape& shape) {
   if (shape_ == shape || shape_.empty())
     return;
-  if (count_ == 1) {  // one for all needs no copy for each
+  if (count() == 1) {  // one for all needs no copy for each
     array_ = py::array(array_.attr("reshape")(3));
     shape_.clear();
   } else {
@@ -137,19 +136,6 @@ void Triples::repeat(const Shape& shape) {
     array_ = repeated(array_, full_shape());
   }
   look();
-}
-
-double Triples::at(std::size_t i, std::size_t axis) const {
-  const char* const from =
-      data_ + std::ptrdiff_t(i) * stride_ + std::ptrdiff_t(axis) * axis_stride_;
-  if (in_double_) {
-    double value;
-    std::memcpy(&value, from, sizeof value);
-    return value;
-  }
-  float value;
-  std::memcpy(&value, from, sizeof value);
-  return double{value};
 }
 
 Shape Triples::full_shape() const {
@@ -160,26 +146,26 @@ Shape Triples::full_shape() const {
 
 bool Triples::lies_as_floats() const {
   constexpr std::ptrdiff_t kSize = sizeof(float);
-  return !in_double_ && stride_ % kSize == 0 && axis_stride_ % kSize == 0 &&
-         reinterpret_cast<std::uintptr_t>(data_) % alignof(float) == 0;
+  return !in_double() && points_.stride % kSize == 0 && points_.axis_stride % kSize == 0 &&
+         reinterpret_cast<std::uintptr_t>(points_.data) % alignof(float) == 0;
 }
 const float* Triples::floats(std::size_t axis) const {
-  return reinterpret_cast<const float*>(data_ + std::ptrdiff_t(axis) * axis_stride_);
+  return reinterpret_cast<const float*>(points_.data + std::ptrdiff_t(axis) * points_.axis_stride);
 }
 std::ptrdiff_t Triples::stride() const {
-  return stride_ / std::ptrdiff_t{sizeof(float)};
+  return points_.stride / std::ptrdiff_t{sizeof(float)};
 }
 bool Triples::is_dense() const {
-  return lies_as_floats() && axis_stride_ == sizeof(float) &&
-         (stride_ == sizeof(Float3) || count_ == 1);
+  return lies_as_floats() && points_.axis_stride == sizeof(float) &&
+         (points_.stride == sizeof(Float3) || count() == 1);
 }
 
 std::vector<Float3> Triples::in_frame(const Frame& frame) const {
-  std::vector<Float3> points(count_);
+  std::vector<Float3> points(count());
   const auto inside = [&](std::size_t i, std::size_t axis) {
-    return as_float((at(i, axis) - frame.offset[axis]) * frame.scale);
+    return as_float((points_.at(i, axis) - frame.offset[axis]) * frame.scale);
   };
-  for (std::size_t i = 0; i < count_; ++i)
+  for (std::size_t i = 0; i < points.size(); ++i)
     points[i] = {inside(i, 0), inside(i, 1), inside(i, 2)};
   return points;
 }

@@ -11,7 +11,7 @@
 #include <pybind11/numpy.h>
 
 #include "frontend/scene/frame.hpp"
-#include "grelha/geometry.hpp"
+#include "grelha/coordinates.hpp"
 
 namespace grelha::python {
 
@@ -19,6 +19,7 @@ namespace py = pybind11;
 
 using Shape = std::vector<py::ssize_t>;
 
+Shape shape_of(const py::array& array);
 std::size_t size_of(const Shape& shape);  ///< the number of elements
 /// Broadcasts a shape with another by numpy's rules. Returns false where these forbid it.
 bool broadcast(Shape& shape, const Shape& with);
@@ -52,9 +53,9 @@ class Triples {
   void repeat(const Shape& shape);
 
   const Shape& shape() const { return shape_; }  ///< without the last axis
-  std::size_t count() const { return count_; }
-  bool in_double() const { return in_double_; }
-  double at(std::size_t i, std::size_t axis) const;
+  const PointArray& points() const { return points_; }
+  std::size_t count() const { return points_.count; }
+  bool in_double() const { return points_.in_double; }
   Shape full_shape() const;  ///< with the last axis
 
   /// True if the kernel can read the array where it lies.
@@ -71,10 +72,7 @@ class Triples {
 
   py::array array_, rows_;  ///< as given; with two axes
   Shape shape_;
-  std::size_t count_ = 1;
-  bool in_double_ = false;
-  const char* data_ = nullptr;
-  std::ptrdiff_t stride_ = 0, axis_stride_ = 0;  ///< bytes
+  PointArray points_;  ///< all rows
 };
 
 /// Throws ValueError for what is not of shape (n, 3).

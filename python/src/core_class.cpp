@@ -23,7 +23,7 @@ py::object offset_of(const Model& model) {
 }
 
 std::string text_of_geometry(const Model& model) {
-  const Geometry& g = model.scene.geometry;
+  const Geometry& g = model.geometry();
   std::string text;
   const auto add = [&](std::size_t count, const char* what) {
     if (count > 0)
@@ -66,29 +66,28 @@ auto of_points(const Query& query) {
 void define_making(py::module_& module, py::class_<Core>& core) {
   module.def("mesh", [](py::handle vertices, py::handle faces, py::handle threads) {
     const int count = threads_in(threads);
-    return Core{built(mesh_model(vertices, faces), count)};
+    return Core{built(mesh_parts(vertices, faces), count)};
   });
   module.def("spheres", [](py::handle centers, py::handle radii, py::handle threads) {
     const int count = threads_in(threads);
-    return Core{built(sphere_model(centers, radii), count)};
+    return Core{built(sphere_parts(centers, radii), count)};
   });
   module.def("core_of", [](const py::tuple& state) { return Core{model_of(state)}; });
   core.def("state", [](const Core& self) { return state_of(*self.model); });
   core.def("moved",
            [](const Core& self, py::handle vertices, py::handle radii, py::handle threads) {
              const int count = threads_in(threads);
-             return Core{built(moved_model(*self.model, vertices, radii), count)};
+             return Core{built(moved_parts(*self.model, vertices, radii), count)};
            });
   core.def("masks_in",
            [](const Core& self, py::handle masks) { return masks_in(masks, *self.model); });
 }
 
 void define_members(py::class_<Core>& core) {
-  core.def("vertices", [](const Core& self) {
-    return rows_of(*self.model, self.model->scene.geometry.triangles);
-  });
+  core.def("vertices",
+           [](const Core& self) { return rows_of(*self.model, self.model->geometry().triangles); });
   core.def("faces", [](const Core& self) {
-    const Triangles& t = self.model->scene.geometry.triangles;
+    const Triangles& t = self.model->geometry().triangles;
     py::array_t<std::int64_t> faces(Shape{py::ssize_t(t.size()), 3});
     std::int64_t* to = faces.mutable_data();
     for (std::size_t i = 0; i < t.size(); ++i)

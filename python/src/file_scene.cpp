@@ -33,12 +33,6 @@ py::tuple tuple_of(const std::array<double, 3>& v) {
   return py::make_tuple(v[0], v[1], v[2]);
 }
 
-Float3 direction_in(py::handle given, const char* name) {
-  const Triples v(given, name);
-  if (!v.shape().empty())
-    wrong_value(name, "shape (3,)", text_of(v.full_shape()));
-  return v.in_frame({})[0];
-}
 Float3 point_in(py::handle given, const char* name, const Frame& frame) {
   const Triples v(given, name);
   if (!v.shape().empty())
@@ -54,11 +48,8 @@ FileScene FileScene::of(SceneFile file, bool in_double, int threads) {
   apply_effects({}, file, options);
   scene.samples_ = options.sampling.samples;
   scene.camera_ = file.camera;
-  auto model = std::make_shared<Model>();
-  model->scene = std::move(file.scene);
-  model->frame = file.frame;
-  model->in_double = in_double;
-  scene.model_ = built(std::move(model), threads);
+  scene.model_ =
+      built({{std::move(file.scene), file.frame.offset}, file.frame.scale, in_double}, threads);
   return scene;
 }
 
@@ -79,13 +70,13 @@ FileScene FileScene::read(py::handle path, int threads) {
 }
 
 FileScene FileScene::of_mesh(py::handle vertices, py::handle faces, int threads) {
-  const std::shared_ptr<Model> mesh = mesh_model(vertices, faces);
+  ModelParts mesh = mesh_parts(vertices, faces);
   SceneFile file;
-  file.scene = std::move(mesh->scene);
+  file.frame.offset = mesh.scene.offset;
+  file.scene = std::move(mesh.scene);
   file.scene.materials = {default_mesh_material()};
-  file.frame = mesh->frame;
   add_default_view(file);
-  return of(std::move(file), mesh->in_double, threads);
+  return of(std::move(file), mesh.in_double, threads);
 }
 
 py::dict FileScene::camera() const {
@@ -111,7 +102,7 @@ Camera FileScene::camera_for(const RenderArguments& given) const {
   if (!given.at.is_none())
     camera.at = point_in(given.at, "at", frame);
   if (!given.up.is_none())
-    camera.up = direction_in(given.up, "up");
+    camera.up = point_in(given.up, "up", {});  // a direction
   if (!given.angle.is_none())
     camera.angle_deg = number_in(given.angle, "angle");
   if (!camera_is_valid(camera))
@@ -148,7 +139,7 @@ py::array_t<float> FileScene::render(const RenderArguments& given) const {
   hear_signals([&](const Progress& progress) {
     options.progress = progress;
     RenderStats stats;
-    const Image image = grelha::render(*model->world, camera, options, stats);
+    const Image image = grelha::render(model->world(), camera, options, stats);
     std::copy(image.rgb.begin(), image.rgb.end(), to);
   });
   return pixels;
@@ -190,7 +181,7 @@ void write_picture(py::handle path, py::handle given) {
   if (!image_format(name))
     wrong_value("path", "a name that ends with .png, .hdr, .pfm or .exr", '"' + name + '"');
   const py::array array = numbers_in(given, "image", "(h, w) or (h, w, 3)");
-  const Shape shape(array.shape(), array.shape() + array.ndim());
+  const Shape shape = shape_of(array);
   const bool grey = shape.size() == 2;
   if (!grey && !(shape.size() == 3 && shape[2] == 3))
     wrong_value("image", "shape (h, w) or (h, w, 3)", text_of(shape));

@@ -1,43 +1,55 @@
 #pragma once
-// A World with the arrays that it refers to.
+// A World with its arrays, and the frame in which callers see it.
 
 #include <cstdint>
 #include <memory>
+#include <utility>
 
 #include "frontend/scene/frame.hpp"
-#include "grelha/geometry.hpp"
-#include "grelha/world.hpp"
+#include "grelha/owning_world.hpp"
 #include "src/arrays.hpp"
 
 namespace grelha::python {
 
-/// Immutable once it is built, so queries on several threads may share it.
-struct Model {
-  Scene scene;
-  Frame frame;             ///< in which the scene lies
+/// What a Model is built of.
+struct ModelParts {
+  OffsetScene scene{};
+  double scale = 1;        ///< of the frame in which the scene lies
   bool in_double = false;  ///< points are given back in double
-  std::unique_ptr<World> world;
+};
 
+/// Immutable, so queries on several threads may share it.
+struct Model {
+  OwningWorld owner;
+  Frame frame;  ///< in which the scene lies
+  bool in_double;
+
+  Model(ModelParts parts, const BuildOptions& options)
+      : owner(std::move(parts.scene), options),
+        frame{scene().offset, parts.scale},
+        in_double(parts.in_double) {}
+  const World& world() const { return owner.world(); }
+  const OffsetScene& scene() const { return owner.scene(); }
+  const Geometry& geometry() const { return scene().geometry; }
   std::uint32_t first_triangle() const {  ///< the id of face 0
-    return std::uint32_t(scene.geometry.planes.size() + scene.geometry.spheres.size());
+    return std::uint32_t(geometry().planes.size() + geometry().spheres.size());
   }
   std::uint32_t primitives() const {
-    const Geometry& g = scene.geometry;
-    return first_triangle() + std::uint32_t(g.triangles.size() + g.cones.size());
+    return first_triangle() + std::uint32_t(geometry().triangles.size() + geometry().cones.size());
   }
-  bool is_one_mesh() const { return primitives() == scene.geometry.triangles.size(); }
+  bool is_one_mesh() const { return primitives() == geometry().triangles.size(); }
 };
 using SharedModel = std::shared_ptr<const Model>;
 
 /// Builds the grids, while signals are heard.
-SharedModel built(std::shared_ptr<Model> model, int threads);
+SharedModel built(ModelParts parts, int threads);
 
-/// A model of triangles, not built yet. Throws TypeError and ValueError that name the argument.
-std::shared_ptr<Model> mesh_model(py::handle vertices, py::handle faces);
+/// Triangles, not built yet. Throws TypeError and ValueError that name the argument.
+ModelParts mesh_parts(py::handle vertices, py::handle faces);
 /// The same faces with other vertices, as many; or spheres with other centers, as many, and radii.
-std::shared_ptr<Model> moved_model(const Model& model, py::handle vertices, py::handle radii);
-/// A model of spheres.
-std::shared_ptr<Model> sphere_model(py::handle centers, py::handle radii);
+ModelParts moved_parts(const Model& model, py::handle vertices, py::handle radii);
+/// Spheres.
+ModelParts sphere_parts(py::handle centers, py::handle radii);
 
 /// Points of the model's frame in the caller's units: (..., 3), float64 if the vertices were.
 py::object outside_points(const Model& model, const std::vector<Float3>& points, Shape shape);

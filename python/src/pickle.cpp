@@ -70,12 +70,12 @@ std::vector<std::uint32_t> object_ranges(const std::vector<Object>& objects) {
 
 py::tuple state_of(const Model& model) {
   py::dict arrays;
-  each_array(model.scene.geometry, [&](const char* name, const auto& values) {
+  each_array(model.geometry(), [&](const char* name, const auto& values) {
     using T = typename std::decay_t<decltype(values)>::value_type;
     if (!values.empty())
       arrays[name] = py::array_t<T>(py::ssize_t(values.size()), values.data());
   });
-  const std::vector<std::uint32_t> ranges = object_ranges(model.scene.geometry.objects);
+  const std::vector<std::uint32_t> ranges = object_ranges(model.geometry().objects);
   const auto& offset = model.frame.offset;
   return py::make_tuple(kVersion,
                         arrays,
@@ -85,11 +85,11 @@ py::tuple state_of(const Model& model) {
                         model.in_double);
 }
 
-std::shared_ptr<Model> unbuilt_model_of(const py::tuple& state) {
+ModelParts parts_of_state(const py::tuple& state) {
   if (state.size() != 6 || !py::isinstance<py::int_>(state[0]) || state[0].cast<int>() != kVersion)
     throw py::value_error("state: expected that of a World of this version of grelha");
-  auto model = std::make_shared<Model>();
-  Geometry& g = model->scene.geometry;
+  ModelParts parts;
+  Geometry& g = parts.scene.geometry;
   const auto arrays = state[1].cast<py::dict>();
   std::uint32_t materials = 0;
   each_array(g, [&](const char* name, auto& values) {
@@ -103,20 +103,20 @@ std::shared_ptr<Model> unbuilt_model_of(const py::tuple& state) {
       materials = std::max(materials, m);
   if (materials >= 0x1000000)
     throw py::value_error("state: expected fewer materials");
-  model->scene.materials.resize(materials + std::size_t{1});
+  parts.scene.materials.resize(materials + std::size_t{1});
   const std::vector<std::uint32_t> ranges = vector_of<std::uint32_t>(state[2]);
   for (std::size_t i = 0; i + 1 < ranges.size(); i += 2)
     g.objects.push_back({ranges[i], ranges[i + 1]});
   const auto offset = state[3].cast<py::tuple>();
   for (std::size_t a = 0; a < 3; ++a)
-    model->frame.offset[a] = offset[a].cast<double>();
-  model->frame.scale = state[4].cast<double>();
-  model->in_double = state[5].cast<bool>();
-  return model;
+    parts.scene.offset[a] = offset[a].cast<double>();
+  parts.scale = state[4].cast<double>();
+  parts.in_double = state[5].cast<bool>();
+  return parts;
 }
 
 SharedModel model_of(const py::tuple& state) {
-  return built(unbuilt_model_of(state), 0);
+  return built(parts_of_state(state), 0);
 }
 
 }  // namespace grelha::python

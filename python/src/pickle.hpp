@@ -9,6 +9,6 @@ py::tuple state_of(const Model& model);
 /// Throws ValueError for what state_of() did not make.
 SharedModel model_of(const py::tuple& state);
 /// The same, to be built when its materials and lights are there.
-std::shared_ptr<Model> unbuilt_model_of(const py::tuple& state);
+ModelParts parts_of_state(const py::tuple& state);
 
 }  // namespace grelha::python

@@ -55,7 +55,7 @@ py::array_t<T> found_points(const Model& model,
     const bool any{found[i]};
     const float p[3] = {found[i].point.x, found[i].point.y, found[i].point.z};
     for (std::size_t a = 0; a < 3; ++a)
-      *to++ = static_cast<T>(any ? model.frame.outside(p[a], a) : given.at(i, a));
+      *to++ = static_cast<T>(any ? model.frame.outside(p[a], a) : given.points().at(i, a));
   }
   return points;
 }
@@ -68,7 +68,7 @@ py::object inside_points(const Model& model, py::handle given, py::handle wanted
   py::array_t<bool> inside(batch.shape());
   auto* const to = reinterpret_cast<std::uint8_t*>(inside.mutable_data());
   hear_signals(batch.count(), [&](const Progress& progress) {
-    contains(*model.world,
+    contains(model.world(),
              batch.points(),
              std::span(to, batch.count()),
              options_of_points(threads, progress));
@@ -88,7 +88,7 @@ py::object nearest_points(const Model& model,
   const double scale = model.frame.scale;
   std::vector<ClosestPoint> found(batch.count());
   hear_signals(batch.count(), [&](const Progress& progress) {
-    closest_points(*model.world,
+    closest_points(model.world(),
                    batch.points(),
                    found,
                    as_float(radius * scale),
@@ -116,7 +116,7 @@ py::object signed_distances_of(const Model& model, py::handle given, py::handle 
   py::array_t<float> distances(batch.shape());
   float* const to = distances.mutable_data();
   hear_signals(batch.count(), [&](const Progress& progress) {
-    signed_distances(*model.world,
+    signed_distances(model.world(),
                      batch.points(),
                      std::span(to, batch.count()),
                      options_of_points(threads, progress));

@@ -58,7 +58,7 @@ void finish(const Model& model,
             std::size_t count,
             const AnswerArrays& to) {
   const std::int64_t first = model.first_triangle();
-  const std::int64_t end = first + std::int64_t(model.scene.geometry.triangles.size());
+  const std::int64_t end = first + std::int64_t(model.geometry().triangles.size());
   const bool is_one_mesh = to.face == to.id;
   for (std::size_t i = 0; i < count; ++i) {
     const std::int64_t id = signed_id(ids[i]);
@@ -91,7 +91,7 @@ py::object closest_hit(const Model& model, RayBatch& batch) {
   hits.id = &id;
   hits.u = &one.u;
   hits.v = &one.v;
-  closest(*model.world, batch.rays(), hits, options_of(batch, 1, {}));
+  closest(model.world(), batch.rays(), hits, options_of(batch, 1, {}));
   finish(model, &id, 1, {&one.t, nullptr, nullptr, &one.id, &one.face});
   return result_class("Hits")(one.t, one.id, one.u, one.v, one.face);
 }
@@ -116,7 +116,7 @@ py::object closest_hits(const Model& model, const RayArguments& given, py::handl
     hits.id = ids.get();
     hits.u = to.u;
     hits.v = to.v;
-    closest(*model.world, batch.rays(), hits, options_of(batch, threads, progress));
+    closest(model.world(), batch.rays(), hits, options_of(batch, threads, progress));
     finish(model, ids.get(), batch.count(), to);
   });
   return result_class("Hits")(answers.t, answers.id, answers.u, answers.v, answers.face);
@@ -129,7 +129,7 @@ py::object occluded_rays(const Model& model, const RayArguments& given, py::hand
   static_assert(sizeof(bool) == sizeof(std::uint8_t));
   auto* const to = reinterpret_cast<std::uint8_t*>(blocked.mutable_data());
   hear_signals(batch.count(), [&](const Progress& progress) {
-    occluded(*model.world, batch.rays(), to, options_of(batch, threads, progress));
+    occluded(model.world(), batch.rays(), to, options_of(batch, threads, progress));
   });
   return plain(blocked, batch.shape());
 }
@@ -182,7 +182,7 @@ py::object all_ray_hits(const Model& model, const RayArguments& given, py::handl
   RayBatch batch(model, given);
   HitLists lists;
   hear_signals(batch.count(), [&](const Progress& progress) {
-    lists = all_hits(*model.world, batch.rays(), options_of(batch, threads, progress));
+    lists = all_hits(model.world(), batch.rays(), options_of(batch, threads, progress));
   });
   const ListArrays arrays(lists.offset, lists.hits, model.frame.scale);
   return result_class("HitLists")(arrays.offsets, arrays.t, arrays.id);
@@ -193,7 +193,7 @@ py::object ray_crossings(const Model& model, const RayArguments& given, py::hand
   RayBatch batch(model, given);
   CrossingLists lists;
   hear_signals(batch.count(), [&](const Progress& progress) {
-    lists = crossings(*model.world, batch.rays(), options_of(batch, threads, progress));
+    lists = crossings(model.world(), batch.rays(), options_of(batch, threads, progress));
   });
   const ListArrays arrays(lists.offset, lists.crossings, model.frame.scale);
   py::array_t<bool> enters(py::ssize_t(lists.crossings.size()));
@@ -206,13 +206,13 @@ py::object ray_crossings(const Model& model, const RayArguments& given, py::hand
 
 py::object hit_counts(const Model& model, const RayArguments& given, py::handle wanted) {
   return counted(model, given, wanted, [&](const Rays& rays, auto* counts, const auto& options) {
-    count_hits(*model.world, rays, counts, options);
+    count_hits(model.world(), rays, counts, options);
   });
 }
 
 py::object crossing_counts(const Model& model, const RayArguments& given, py::handle wanted) {
   return counted(model, given, wanted, [&](const Rays& rays, auto* counts, const auto& options) {
-    count_crossings(*model.world, rays, counts, options);
+    count_crossings(model.world(), rays, counts, options);
   });
 }
 

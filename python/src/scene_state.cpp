@@ -92,7 +92,7 @@ Camera camera_of(const py::tuple& state) {
 }  // namespace
 
 py::tuple FileScene::state() const {
-  const Scene& s = model_->scene;
+  const Scene& s = model_->scene();
   return py::make_tuple(state_of(*model_),
                         floats_of(s.materials, kMaterialFloats),
                         floats_of(s.lights, kLightFloats),
@@ -104,19 +104,19 @@ py::tuple FileScene::state() const {
 FileScene FileScene::of_state(const py::tuple& state) {
   if (state.size() != 6)
     throw py::value_error("state: expected that of a Scene of this version of grelha");
-  auto model = unbuilt_model_of(state[0].cast<py::tuple>());
-  model->scene.materials = things_of<Material>(state[1], kMaterialFloats);
-  model->scene.lights = things_of<Light>(state[2], kLightFloats);
+  ModelParts parts = parts_of_state(state[0].cast<py::tuple>());
+  parts.scene.materials = things_of<Material>(state[1], kMaterialFloats);
+  parts.scene.lights = things_of<Light>(state[2], kLightFloats);
   const auto background = things_of<Float3>(state[3], 3);
   if (background.size() != 1)
     throw py::value_error("state: expected one background");
-  model->scene.background = background[0];
+  parts.scene.background = background[0];
   FileScene scene;
   scene.camera_ = camera_of(state[4].cast<py::tuple>());
   scene.samples_ = state[5].cast<int>();
   if (scene.samples_ < 1 || scene.samples_ > kMostSamples)
     throw py::value_error("state: expected 1 sample or more");
-  scene.model_ = built(std::move(model), 0);
+  scene.model_ = built(std::move(parts), 0);
   return scene;
 }
 

@@ -53,9 +53,9 @@ struct Starts {
 
   Float3 direction(std::size_t i) const {
     const std::size_t at = directions.shape().empty() ? 0 : i;
-    return {as_float(directions.at(at, 0)),
-            as_float(directions.at(at, 1)),
-            as_float(directions.at(at, 2))};
+    return {as_float(directions.points().at(at, 0)),
+            as_float(directions.points().at(at, 1)),
+            as_float(directions.points().at(at, 2))};
   }
 };
 
@@ -66,9 +66,9 @@ std::vector<Float3> origins_of(const Model& model, const Starts& starts, const P
     if (i % kAsk == 0 && !progress(double(i) / double(origins.size())))
       throw Stopped();
     const Float3 point =
-        point_on(model.scene.geometry.triangles, starts.face[i], starts.u[i], starts.v[i]);
+        point_on(model.geometry().triangles, starts.face[i], starts.u[i], starts.v[i]);
     const SurfacePoint surface =
-        surface_at(*model.world, model.first_triangle() + starts.face[i], point);
+        surface_at(model.world(), model.first_triangle() + starts.face[i], point);
     origins[i] = surface.offset_origin(starts.direction(i));
   }
   return origins;
@@ -88,7 +88,7 @@ py::object start_points(const Model& model, const StartArguments& given) {
   share(shape, u.shape(), "u");
   share(shape, v.shape(), "v");
   directions.repeat(shape);
-  const Starts starts{faces_for(face, shape, model.scene.geometry.triangles.size()),
+  const Starts starts{faces_for(face, shape, model.geometry().triangles.size()),
                       u.repeat(shape),
                       v.repeat(shape),
                       std::move(directions)};
