@@ -9,11 +9,13 @@
 namespace grelha::c {
 namespace {
 
-/// Calls work(points, first) for copies of the points, a part at a time: the kernel wants them
-/// without gaps, and a copy of all could be too large.
+/// Calls work(world, points, first, options) for copies of the points, a part at a time: the kernel
+/// wants them without gaps, and a copy of all could be too large.
 template <class Work>
-void each_part(const PointArray& all, const Work& work) {
+void each_part(const grelha_world* world, const PointArray& all, int threads, const Work& work) {
   constexpr std::size_t kPart = std::size_t{1} << 20;
+  const World& asked = world_of(world);
+  const QueryOptions options{.threads = expect_threads(threads)};
   std::vector<Float3> points;
   for (std::size_t first = 0; first < all.count; first += kPart) {
     points.resize(std::min(kPart, all.count - first));
@@ -21,7 +23,7 @@ void each_part(const PointArray& all, const Work& work) {
       const auto at = [&](std::size_t a) { return static_cast<float>(all.at(first + i, a)); };
       points[i] = {at(0), at(1), at(2)};
     }
-    work(std::span<const Float3>(points), first);
+    work(asked, std::span<const Float3>(points), first, options);
   }
 }
 
@@ -57,12 +59,10 @@ grelha_status grelha_contains(const grelha_world* world,
                               int threads) {
   using namespace grelha::c;
   return guarded([&] {
-    const grelha::World& asked = world_of(world);
-    const grelha::PointArray all(points, stride, count, "points");
     if (count > 0)
       expect_there(inside, "inside");
-    const grelha::QueryOptions options{.threads = expect_threads(threads)};
-    each_part(all, [&](std::span<const grelha::Float3> part, std::size_t first) {
+    const grelha::PointArray all(points, stride, count, "points");
+    each_part(world, all, threads, [&](auto& asked, auto part, auto first, auto& options) {
       grelha::contains(asked, part, {inside + first, part.size()}, options);
     });
   });
@@ -79,13 +79,11 @@ grelha_status grelha_closest_points(const grelha_world* world,
                                     int threads) {
   using namespace grelha::c;
   return guarded([&] {
-    const grelha::World& asked = world_of(world);
-    const grelha::PointArray all(points, stride, count, "points");
     if (!(radius >= 0))
       refuse("radius", "0 or more", std::to_string(radius));
-    const grelha::QueryOptions options{.threads = expect_threads(threads)};
     std::vector<grelha::ClosestPoint> answers;
-    each_part(all, [&](std::span<const grelha::Float3> part, std::size_t first) {
+    const grelha::PointArray all(points, stride, count, "points");
+    each_part(world, all, threads, [&](auto& asked, auto part, auto first, auto& options) {
       answers.resize(part.size());
       grelha::closest_points(asked, part, answers, radius, options);
       store(answers, first, found, distance, id);
@@ -101,12 +99,10 @@ grelha_status grelha_signed_distances(const grelha_world* world,
                                       int threads) {
   using namespace grelha::c;
   return guarded([&] {
-    const grelha::World& asked = world_of(world);
-    const grelha::PointArray all(points, stride, count, "points");
     if (count > 0)
       expect_there(distance, "distance");
-    const grelha::QueryOptions options{.threads = expect_threads(threads)};
-    each_part(all, [&](std::span<const grelha::Float3> part, std::size_t first) {
+    const grelha::PointArray all(points, stride, count, "points");
+    each_part(world, all, threads, [&](auto& asked, auto part, auto first, auto& options) {
       grelha::signed_distances(asked, part, {distance + first, part.size()}, options);
     });
   });

@@ -1,8 +1,6 @@
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 #include <string>
-#include <utility>
 
 #include "c/world.hpp"
 #include "grelha/all_hits.hpp"
@@ -76,17 +74,30 @@ Ray ray_of(const Rays& rays, std::size_t i) {
 
 constexpr std::size_t kPart = std::size_t{1} << 17;
 
+/// Where a member of each item is stored, if it is wanted.
+template <class Item, class Member, class To>
+struct Column {
+  Member Item::*member;
+  To* to;
+  void store(std::size_t first, const std::vector<Item>& items) const {
+    for (std::size_t i = 0; to && i < items.size(); ++i)
+      to[first + i] = items[i].*member;
+  }
+};
+template <class Item, class Member, class To>
+Column(Member Item::*, To*) -> Column<Item, Member, To>;
+
 /// Finds items of many rays a part of them at a time, so that they are in memory twice only in
-/// part. `list(part)` returns a part's items with their offsets, `store(first, items)` stores them
-/// from element `first` on, and `count(part, counts)` only counts them.
-template <class List, class Store, class Count>
+/// part. `list(part)` returns a part's items with their offsets, which columns store, and
+/// `count(part, counts)` only counts them.
+template <class List, class Count, class... Columns>
 void list_by_parts(const Rays& rays,
                    std::size_t* offset,
                    std::size_t capacity,
-                   bool stores,
                    const List& list,
-                   const Store& store,
-                   const Count& count) {
+                   const Count& count,
+                   const Columns&... columns) {
+  const bool stores = (columns.to || ...);
   offset[0] = 0;
   for (std::size_t first = 0; first < rays.count; first += kPart) {
     const Rays part = part_of(rays, first, std::min(rays.count, first + kPart));
@@ -96,7 +107,7 @@ void list_by_parts(const Rays& rays,
       for (std::size_t i = 0; i < part.count; ++i)
         to[i + 1] = to[0] + offsets[i + 1];
       if (to[part.count] <= capacity)
-        store(to[0], items);
+        (columns.store(to[0], items), ...);
     } else {
       std::vector<std::uint32_t> counts(part.count);
       count(part, counts.data());
@@ -107,18 +118,6 @@ void list_by_parts(const Rays& rays,
   if (stores && offset[rays.count] > capacity)
     throw TooMany("capacity: expected at least " + std::to_string(offset[rays.count]) + ", found " +
                   std::to_string(capacity));
-}
-
-/// Stores a member of each item, where an array is given.
-template <class Items, class Member, class To>
-void store_each(const Items& items, Member member, To* to) {
-  for (std::size_t i = 0; to && i < items.size(); ++i)
-    to[i] = items[i].*member;
-}
-
-template <class T>
-T* after(T* array, std::size_t by) {
-  return array ? array + by : nullptr;
 }
 
 }  // namespace
@@ -183,15 +182,12 @@ grelha_status grelha_all_hits(const grelha_world* world,
         stream,
         offset,
         capacity,
-        t || id,
         [&](const grelha::Rays& part) { return grelha::all_hits(asked, part, options); },
-        [&](std::size_t first, const std::vector<grelha::Hit>& hits) {
-          store_each(hits, &grelha::Hit::t, after(t, first));
-          store_each(hits, &grelha::Hit::id, after(id, first));
-        },
         [&](const grelha::Rays& part, uint32_t* counts) {
           grelha::count_hits(asked, part, counts, options);
-        });
+        },
+        Column{&grelha::Hit::t, t},
+        Column{&grelha::Hit::id, id});
   });
 }
 
@@ -213,16 +209,13 @@ grelha_status grelha_crossings(const grelha_world* world,
         stream,
         offset,
         capacity,
-        t || id || enters,
         [&](const grelha::Rays& part) { return grelha::crossings(asked, part, options); },
-        [&](std::size_t first, const std::vector<grelha::Crossing>& crossings) {
-          store_each(crossings, &grelha::Crossing::t, after(t, first));
-          store_each(crossings, &grelha::Crossing::id, after(id, first));
-          store_each(crossings, &grelha::Crossing::enters, after(enters, first));
-        },
         [&](const grelha::Rays& part, uint32_t* counts) {
           grelha::count_crossings(asked, part, counts, options);
-        });
+        },
+        Column{&grelha::Crossing::t, t},
+        Column{&grelha::Crossing::id, id},
+        Column{&grelha::Crossing::enters, enters});
   });
 }
 
