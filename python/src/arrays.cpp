@@ -1,7 +1,6 @@
 #include "src/arrays.hpp"
 
 #include <algorithm>
-#include <stdexcept>
 
 namespace grelha::python {
 namespace {
@@ -43,6 +42,13 @@ py::array repeated(const py::array& array, const Shape& shape) {
   for (std::size_t i = 0; i < shape.size(); ++i)
     axes[i] = shape[i];
   return (*to)(array, axes);
+}
+
+/// The numbers of such a view, row after row.
+template <class T>
+auto repeated_as(const py::array& array, const Shape& shape) {
+  using Rows = py::array_t<T, py::array::c_style | py::array::forcecast>;
+  return Rows(shape_of(array) == shape ? array : repeated(array, shape));
 }
 
 }  // namespace
@@ -149,16 +155,6 @@ bool Triples::lies_as_floats() const {
   return !in_double() && points_.stride % kSize == 0 && points_.axis_stride % kSize == 0 &&
          reinterpret_cast<std::uintptr_t>(points_.data) % alignof(float) == 0;
 }
-const float* Triples::floats(std::size_t axis) const {
-  return reinterpret_cast<const float*>(points_.data + std::ptrdiff_t(axis) * points_.axis_stride);
-}
-std::ptrdiff_t Triples::stride() const {
-  return points_.stride / std::ptrdiff_t{sizeof(float)};
-}
-bool Triples::is_dense() const {
-  return lies_as_floats() && points_.axis_stride == sizeof(float) &&
-         (points_.stride == sizeof(Float3) || count() == 1);
-}
 
 std::vector<Float3> Triples::in_frame(const Frame& frame) const {
   std::vector<Float3> points(count());
@@ -170,12 +166,17 @@ std::vector<Float3> Triples::in_frame(const Frame& frame) const {
   return points;
 }
 
-void expect_rows(const Triples& triples, const char* name) {
-  if (triples.shape().size() != 1)
-    wrong_value(name, "shape (n, 3)", text_of(triples.full_shape()));
+std::span<const Float3> Triples::in_frame(const Frame& frame, std::vector<Float3>& copy) const {
+  const bool is_dense = lies_as_floats() && points_.axis_stride == sizeof(float) &&
+                        (points_.stride == sizeof(Float3) || count() == 1);
+  if (is_dense && frame == Frame{})
+    return {reinterpret_cast<const Float3*>(points_.data), count()};
+  copy = in_frame(frame);
+  return copy;
 }
 
-Numbers::Numbers(py::handle given, const char* name) {
+template <class T>
+NumbersOf<T>::NumbersOf(py::handle given, const char* name) {
   if (PyFloat_Check(given.ptr())) {
     all = PyFloat_AS_DOUBLE(given.ptr());
     return;
@@ -187,23 +188,22 @@ Numbers::Numbers(py::handle given, const char* name) {
   array_ = array;
 }
 
-void Numbers::repeat(const Shape& shape) {
+template <class T>
+void NumbersOf<T>::repeat(const Shape& shape) {
   if (shape_.empty())
     return;
-  using Floats = py::array_t<float, py::array::c_style | py::array::forcecast>;
-  const auto array = py::reinterpret_borrow<py::array>(array_);
-  const Floats floats(shape_ == shape ? array : repeated(array, shape));
-  each.assign(floats.data(), floats.data() + floats.size());
+  const auto numbers = repeated_as<T>(py::reinterpret_borrow<py::array>(array_), shape);
+  each.assign(numbers.data(), numbers.data() + numbers.size());
 }
 
-Doubles::Doubles(py::handle given, const char* name)
-    : array_(numbers_in(given, name, "(...)")), shape_(shape_of(array_)) {}
-
-std::vector<double> Doubles::repeat(const Shape& shape) const {
-  using All = py::array_t<double, py::array::c_style | py::array::forcecast>;
-  const All all(shape_ == shape ? array_ : repeated(array_, shape));
-  return {all.data(), all.data() + all.size()};
+template <class T>
+void NumbersOf<T>::fill(const Shape& shape) {
+  repeat(shape);
+  if (shape_.empty())
+    each.assign(size_of(shape), static_cast<T>(all));
 }
+template class NumbersOf<float>;
+template class NumbersOf<double>;
 
 py::array_t<std::int64_t> whole_numbers(py::handle given, const char* name, const char* shape) {
   const std::string what = std::string("whole numbers of shape ") + shape;
@@ -214,7 +214,7 @@ py::array_t<std::int64_t> whole_numbers(py::handle given, const char* name, cons
   return py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>(array);
 }
 
-Wholes::Wholes(py::handle given, const char* name) {
+Wholes::Wholes(py::handle given, const char* name) : name_(name) {
   if (given.is_none())
     return;
   const py::array array = whole_numbers(given, name, "(...)");
@@ -222,11 +222,28 @@ Wholes::Wholes(py::handle given, const char* name) {
   array_ = array;
 }
 
-py::array_t<std::int64_t> Wholes::repeat(const Shape& shape) const {
-  using Ids = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
-  const auto array = py::reinterpret_borrow<py::array>(array_);
-  return Ids(shape_ == shape ? array : repeated(array, shape));
+template <class T>
+std::vector<T> Wholes::repeat(const Shape& shape,
+                              const std::string& expected,
+                              std::int64_t least,
+                              std::size_t end) const {
+  const auto numbers = repeated_as<std::int64_t>(py::reinterpret_borrow<py::array>(array_), shape);
+  std::vector<T> all(std::size_t(numbers.size()));
+  std::transform(numbers.data(), numbers.data() + all.size(), all.begin(), [&](std::int64_t n) {
+    if (n < least || n >= std::int64_t(end))
+      wrong_value(name_, expected, std::to_string(n));
+    return static_cast<T>(n);
+  });
+  return all;
 }
+template std::vector<std::uint8_t> Wholes::repeat(const Shape&,
+                                                  const std::string&,
+                                                  std::int64_t,
+                                                  std::size_t) const;
+template std::vector<std::uint32_t> Wholes::repeat(const Shape&,
+                                                   const std::string&,
+                                                   std::int64_t,
+                                                   std::size_t) const;
 
 double number_in(py::handle given, const char* name) {
   const double value = PyFloat_AsDouble(given.ptr());

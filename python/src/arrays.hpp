@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -60,12 +61,11 @@ class Triples {
 
   /// True if the kernel can read the array where it lies.
   bool lies_as_floats() const;
-  const float* floats(std::size_t axis) const;  ///< the first of this axis, where it lies so
-  std::ptrdiff_t stride() const;                ///< from one to the next, in floats
-  bool is_dense() const;                        ///< lies as an array of Float3
 
   /// Returns a copy as floats in a frame.
   std::vector<Float3> in_frame(const Frame& frame) const;
+  /// Returns the floats where they lie as Float3 in this frame, else fills a copy. Needs no lock.
+  std::span<const Float3> in_frame(const Frame& frame, std::vector<Float3>& copy) const;
 
  private:
   void look();  ///< at the array: where its rows lie
@@ -75,40 +75,28 @@ class Triples {
   PointArray points_;  ///< all rows
 };
 
-/// Throws ValueError for what is not of shape (n, 3).
-void expect_rows(const Triples& triples, const char* name);
-
-/// One number for all rays, or one for each.
-class Numbers {
+/// One number for all rays or points, or one for each, of float or double.
+template <class T>
+class NumbersOf {
  public:
   /// Throws TypeError that names the argument.
-  Numbers(py::handle given, const char* name);
+  NumbersOf(py::handle given, const char* name);
   const Shape& shape() const { return shape_; }
   void repeat(const Shape& shape);  ///< broadcasts to a shape: fills `each`
+  void fill(const Shape& shape);    ///< the same of one number for all
 
   double all = 0;
-  std::vector<float> each;  ///< empty: `all`
+  std::vector<T> each;  ///< empty: `all`
 
  private:
   py::object array_;  ///< null for a float: an empty array takes long to make
   Shape shape_;
 };
+using Numbers = NumbersOf<float>;
+using Doubles = NumbersOf<double>;
 
 /// Returns whole numbers of an array as int64, row after row. Throws TypeError for other numbers.
 py::array_t<std::int64_t> whole_numbers(py::handle given, const char* name, const char* shape);
-
-/// Numbers in double for all points, or one for each.
-class Doubles {
- public:
-  /// Throws TypeError that names the argument.
-  Doubles(py::handle given, const char* name);
-  const Shape& shape() const { return shape_; }
-  std::vector<double> repeat(const Shape& shape) const;  ///< broadcasts to a shape
-
- private:
-  py::array array_;
-  Shape shape_;
-};
 
 /// Whole numbers for all rays, or one for each, or None.
 class Wholes {
@@ -117,9 +105,16 @@ class Wholes {
   Wholes(py::handle given, const char* name);
   explicit operator bool() const { return bool(array_); }  ///< false for None
   const Shape& shape() const { return shape_; }
-  py::array_t<std::int64_t> repeat(const Shape& shape) const;  ///< broadcasts to a shape
+  /// Broadcasts to a shape, unless it is None. Throws ValueError for numbers below `least` or from
+  /// `end` on. T is std::uint8_t or std::uint32_t; -1 becomes its largest.
+  template <class T>
+  std::vector<T> repeat(const Shape& shape,
+                        const std::string& expected,
+                        std::int64_t least,
+                        std::size_t end) const;
 
  private:
+  const char* name_;
   py::object array_;  ///< null for None
   Shape shape_;
 };

@@ -7,7 +7,7 @@
 namespace grelha::python {
 namespace {
 
-constexpr std::size_t kMostPrimitives = 0xFFFFFFFF;
+constexpr std::size_t kMostPrimitives = 0xFFFFFFFE;
 
 /// What make() makes. It may refuse a number: then the error is Python's.
 template <class Make>
@@ -29,7 +29,7 @@ Geometry triangles_in(py::handle given, std::size_t vertices) {
   if (ids.ndim() != 2 || ids.shape(1) != 3)
     wrong_value("faces", "shape (m, 3)", text_of(shape_of(ids)));
   const std::size_t count = std::size_t(ids.shape(0));
-  if (count >= kMostPrimitives)
+  if (count > kMostPrimitives)
     wrong_value("faces", "fewer than 2^32 - 1 triangles", std::to_string(count));
   return checked("faces", "indices of " + std::to_string(vertices) + " vertices", [&] {
     const auto* const faces = reinterpret_cast<const std::array<std::int64_t, 3>*>(ids.data());
@@ -43,9 +43,7 @@ Geometry spheres_in(py::handle given, const Shape& shape) {
   Shape all = shape;
   if (!broadcast(all, radii.shape()) || all != shape)
     wrong_value("radii", "a number or shape " + text_of(shape), text_of(radii.shape()));
-  radii.repeat(shape);
-  if (radii.shape().empty())
-    radii.each.assign(size_of(shape), as_float(radii.all));
+  radii.fill(shape);
   return checked(
       "radii", "numbers above 0 of at most 1e18", [&] { return spheres_of<float>(radii.each); });
 }
@@ -58,12 +56,17 @@ ModelParts parts_of(const Triples& given, Geometry shapes) {
   });
 }
 
+/// Points of shape (n, 3), at most so many.
+Triples rows_in(py::handle given, const char* name, std::size_t most, const char* expected) {
+  Triples points(given, name);
+  if (points.shape().size() != 1)
+    wrong_value(name, "shape (n, 3)", text_of(points.full_shape()));
+  if (points.count() > most)
+    wrong_value(name, expected, std::to_string(points.count()));
+  return points;
+}
 Triples vertices_in(py::handle given) {
-  Triples vertices(given, "vertices");
-  expect_rows(vertices, "vertices");
-  if (vertices.count() > kMostPrimitives)
-    wrong_value("vertices", "fewer than 2^32 points", std::to_string(vertices.count()));
-  return vertices;
+  return rows_in(given, "vertices", kMostPrimitives + 1, "fewer than 2^32 points");
 }
 
 }  // namespace
@@ -71,9 +74,8 @@ Triples vertices_in(py::handle given) {
 SharedModel built(ModelParts parts, int threads) {
   SharedModel model;
   const Geometry& g = parts.scene.geometry;
-  const std::size_t count =
-      g.planes.size() + g.spheres.size() + g.triangles.size() + g.cones.size();
-  hear_signals(count, [&](const Progress& progress) {
+  const std::size_t n = g.planes.size() + g.spheres.size() + g.triangles.size() + g.cones.size();
+  hear_signals(n, [&](const Progress& progress) {
     const BuildOptions options{.threads = threads, .progress = progress};
     model = std::make_shared<const Model>(std::move(parts), options);
   });
@@ -110,10 +112,7 @@ ModelParts moved_parts(const Model& before, py::handle vertices, py::handle radi
 }
 
 ModelParts sphere_parts(py::handle given, py::handle radii) {
-  const Triples centers(given, "centers");
-  expect_rows(centers, "centers");
-  if (centers.count() >= kMostPrimitives)
-    wrong_value("centers", "fewer than 2^32 - 1 spheres", std::to_string(centers.count()));
+  const Triples centers = rows_in(given, "centers", kMostPrimitives, "fewer than 2^32 - 1 spheres");
   return parts_of(centers, spheres_in(radii, centers.shape()));
 }
 

@@ -1,6 +1,8 @@
 #include "src/pickle.hpp"
 
 #include <algorithm>
+#include <sstream>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -12,41 +14,18 @@ constexpr int kVersion = 1;
 /// Calls visit(name, vector) for each array of floats or indices.
 template <class Geometry, class Visit>
 void each_array(Geometry& g, const Visit& visit) {
-  auto& s = g.spheres;
-  visit("sphere_x", s.x);
-  visit("sphere_y", s.y);
-  visit("sphere_z", s.z);
-  visit("sphere_radius", s.radius);
-  visit("sphere_material", s.material);
-  auto& t = g.triangles;
-  visit("x", t.x);
-  visit("y", t.y);
-  visit("z", t.z);
-  visit("nx", t.nx);
-  visit("ny", t.ny);
-  visit("nz", t.nz);
-  visit("a", t.a);
-  visit("b", t.b);
-  visit("c", t.c);
-  visit("material", t.material);
-  auto& c = g.cones;
-  visit("base_x", c.base_x);
-  visit("base_y", c.base_y);
-  visit("base_z", c.base_z);
-  visit("apex_x", c.apex_x);
-  visit("apex_y", c.apex_y);
-  visit("apex_z", c.apex_z);
-  visit("base_radius", c.base_radius);
-  visit("apex_radius", c.apex_radius);
-  visit("cone_material", c.material);
-  auto& p = g.planes;
-  visit("plane_x", p.x);
-  visit("plane_y", p.y);
-  visit("plane_z", p.z);
-  visit("plane_nx", p.nx);
-  visit("plane_ny", p.ny);
-  visit("plane_nz", p.nz);
-  visit("plane_material", p.material);
+  std::istringstream names(
+      "sphere_x sphere_y sphere_z sphere_radius sphere_material x y z nx ny nz a b c material "
+      "base_x base_y base_z apex_x apex_y apex_z base_radius apex_radius cone_material "
+      "plane_x plane_y plane_z plane_nx plane_ny plane_nz plane_material");
+  std::string name;
+  const auto all = [&](auto&... arrays) { ((names >> name, visit(name.c_str(), arrays)), ...); };
+  auto& [s, t, c, p, objects] = g;
+  all(s.x, s.y, s.z, s.radius, s.material);
+  all(t.x, t.y, t.z, t.nx, t.ny, t.nz, t.a, t.b, t.c, t.material);
+  all(c.base_x, c.base_y, c.base_z, c.apex_x, c.apex_y, c.apex_z);
+  all(c.base_radius, c.apex_radius, c.material);
+  all(p.x, p.y, p.z, p.nx, p.ny, p.nz, p.material);
 }
 
 template <class T>
@@ -55,15 +34,6 @@ std::vector<T> vector_of(const py::handle& given) {
   if (!array || array.ndim() != 1)
     throw py::value_error("state: expected arrays of one axis");
   return {array.data(), array.data() + array.size()};
-}
-
-std::vector<std::uint32_t> object_ranges(const std::vector<Object>& objects) {
-  std::vector<std::uint32_t> ranges;
-  for (const Object& o : objects) {
-    ranges.push_back(o.first_triangle);
-    ranges.push_back(o.triangle_count);
-  }
-  return ranges;
 }
 
 }  // namespace
@@ -75,11 +45,13 @@ py::tuple state_of(const Model& model) {
     if (!values.empty())
       arrays[name] = py::array_t<T>(py::ssize_t(values.size()), values.data());
   });
-  const std::vector<std::uint32_t> ranges = object_ranges(model.geometry().objects);
+  const std::vector<Object>& objects = model.geometry().objects;
+  static_assert(sizeof(Object) == 2 * sizeof(std::uint32_t));
+  const auto* const ranges = reinterpret_cast<const std::uint32_t*>(objects.data());
   const auto& offset = model.frame.offset;
   return py::make_tuple(kVersion,
                         arrays,
-                        py::array_t<std::uint32_t>(py::ssize_t(ranges.size()), ranges.data()),
+                        py::array_t<std::uint32_t>(2 * py::ssize_t(objects.size()), ranges),
                         py::make_tuple(offset[0], offset[1], offset[2]),
                         model.frame.scale,
                         model.in_double);

@@ -1,7 +1,5 @@
 #include "src/ray_batch.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace grelha::python {
@@ -17,34 +15,6 @@ void add_shape(Shape& shape, const Shape& with, const char* name) {
                 text_of(with));
 }
 
-template <class T, class Check>
-std::vector<T> checked(const Wholes& given, const Shape& shape, const Check& check) {
-  if (!given)
-    return {};
-  const py::array_t<std::int64_t> numbers = given.repeat(shape);
-  std::vector<T> all(std::size_t(numbers.size()));
-  std::transform(numbers.data(), numbers.data() + numbers.size(), all.begin(), check);
-  return all;
-}
-
-/// Ids of primitives to skip: -1 is none.
-std::vector<std::uint32_t> skips_for(const Wholes& given, const Model& model, const Shape& shape) {
-  return checked<std::uint32_t>(given, shape, [&](std::int64_t id) {
-    if (id < -1 || id >= std::int64_t{model.primitives()})
-      wrong_value(
-          "skip", "-1 or ids below " + std::to_string(model.primitives()), std::to_string(id));
-    return id < 0 ? kNoPrimitive : std::uint32_t(id);
-  });
-}
-
-std::vector<std::uint8_t> masks_for(const Wholes& given, const Shape& shape) {
-  return checked<std::uint8_t>(given, shape, [&](std::int64_t mask) {
-    if (mask < 0 || mask > 255)
-      wrong_value("mask", "numbers from 0 to 255", std::to_string(mask));
-    return std::uint8_t(mask);
-  });
-}
-
 }  // namespace
 
 RayBatch::RayBatch(const Model& model, const RayArguments& given)
@@ -56,8 +26,11 @@ RayBatch::RayBatch(const Model& model, const RayArguments& given)
   const Wholes skip(given.skip, "skip");
   const Wholes mask(given.mask, "mask");
   share_shape(skip, mask);
-  skip_ = skips_for(skip, model, shape_);
-  mask_ = masks_for(mask, shape_);
+  if (skip)
+    skip_ = skip.repeat<std::uint32_t>(
+        shape_, "-1 or ids below " + std::to_string(model.primitives()), -1, model.primitives());
+  if (mask)
+    mask_ = mask.repeat<std::uint8_t>(shape_, "numbers from 0 to 255", 0, 256);
   if (given.masks.is_none())
     return;
   const auto masks = py::reinterpret_borrow<py::array>(given.masks);  // the caller holds it
@@ -84,9 +57,10 @@ void RayBatch::share_shape(const Wholes& skip, const Wholes& mask) {
 
 void RayBatch::Column::place(const Frame& frame, const float* (&axes)[3], std::ptrdiff_t& stride) {
   if (frame == Frame{} && given.lies_as_floats()) {
+    const PointArray& lies = given.points();
     for (std::size_t a = 0; a < 3; ++a)
-      axes[a] = given.floats(a);
-    stride = given.stride();
+      axes[a] = reinterpret_cast<const float*>(lies.data + std::ptrdiff_t(a) * lies.axis_stride);
+    stride = lies.stride / std::ptrdiff_t{sizeof(float)};
     return;
   }
   copy = given.in_frame(frame);
@@ -100,29 +74,19 @@ void RayBatch::Column::place(const Frame& frame, const float* (&axes)[3], std::p
 
 void RayBatch::place_range(Rays& rays) {
   const double scale = model_.frame.scale;
-  for (Numbers* const n : {&t_min_, &t_max_})
-    if (scale != 1)
-      for (float& t : n->each)
-        t = as_float(t * scale);
-  const float low = as_float(t_min_.all * scale);
-  const float high = as_float(t_max_.all * scale);
   const bool many = !t_min_.each.empty() || !t_max_.each.empty();
-  if (many) {
-    if (t_min_.each.empty() && low != 0)
-      t_min_.each.assign(count_, low);
-    if (t_max_.each.empty() && high != kInfinity)
-      t_max_.each.assign(count_, high);
-    rays.t_min = t_min_.each.empty() ? nullptr : t_min_.each.data();
-    rays.t_max = t_max_.each.empty() ? nullptr : t_max_.each.data();
-    return;
-  }
-  if (low == 0 && high == kInfinity)
-    return;
-  t_min_.each.assign(1, low);
-  t_max_.each.assign(1, high);
-  rays.t_min = t_min_.each.data();
-  rays.t_max = t_max_.each.data();
-  rays.t_stride = 0;
+  const auto place = [&](Numbers& t, float unless) -> const float* {
+    if (scale != 1)
+      for (float& one : t.each)
+        one = as_float(one * scale);
+    const float all = as_float(t.all * scale);
+    if (t.each.empty() && all != unless)
+      t.each.assign(many ? count_ : 1, all);
+    return t.each.empty() ? nullptr : t.each.data();
+  };
+  rays.t_min = place(t_min_, 0);
+  rays.t_max = place(t_max_, kInfinity);
+  rays.t_stride = many ? 1 : 0;
 }
 
 Rays RayBatch::rays() {

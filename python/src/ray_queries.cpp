@@ -14,11 +14,7 @@ namespace {
 using Ids = py::array_t<std::int64_t>;
 
 QueryOptions options_of(const RayBatch& batch, int threads, const Progress& progress) {
-  QueryOptions options;
-  options.mask = batch.masks();
-  options.threads = threads;
-  options.progress = progress;
-  return options;
+  return {.threads = threads, .mask = batch.masks(), .progress = progress};
 }
 
 /// t in the caller's units.
@@ -86,11 +82,7 @@ namespace {
 py::object closest_hit(const Model& model, RayBatch& batch) {
   AnswerOfOne one;
   std::uint32_t id;
-  Hits hits;
-  hits.t = &one.t;
-  hits.id = &id;
-  hits.u = &one.u;
-  hits.v = &one.v;
+  const Hits hits{.t = &one.t, .id = &id, .u = &one.u, .v = &one.v};
   closest(model.world(), batch.rays(), hits, options_of(batch, 1, {}));
   finish(model, &id, 1, {&one.t, nullptr, nullptr, &one.id, &one.face});
   return result_class("Hits")(one.t, one.id, one.u, one.v, one.face);
@@ -111,11 +103,7 @@ py::object closest_hits(const Model& model, const RayArguments& given, py::handl
                         answers.face.mutable_data()};
   hear_signals(batch.count(), [&](const Progress& progress) {
     const auto ids = std::make_unique_for_overwrite<std::uint32_t[]>(batch.count());
-    Hits hits;
-    hits.t = to.t;
-    hits.id = ids.get();
-    hits.u = to.u;
-    hits.v = to.v;
+    const Hits hits{.t = to.t, .id = ids.get(), .u = to.u, .v = to.v};
     closest(model.world(), batch.rays(), hits, options_of(batch, threads, progress));
     finish(model, ids.get(), batch.count(), to);
   });

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -34,17 +33,6 @@ void expect_on_faces(const std::vector<double>& u, const std::vector<double>& v)
           std::to_string(u[i]) + " and " + std::to_string(v[i]) + " at " + std::to_string(i));
 }
 
-std::vector<std::uint32_t> faces_for(const Wholes& given, const Shape& shape, std::size_t count) {
-  const py::array_t<std::int64_t> rows = given.repeat(shape);
-  std::vector<std::uint32_t> faces(std::size_t(rows.size()));
-  std::transform(rows.data(), rows.data() + rows.size(), faces.begin(), [&](std::int64_t row) {
-    if (row < 0 || row >= std::int64_t(count))
-      wrong_value("face", "rows of " + std::to_string(count) + " faces", std::to_string(row));
-    return std::uint32_t(row);
-  });
-  return faces;
-}
-
 /// Points of faces, and the directions in which rays leave them.
 struct Starts {
   std::vector<std::uint32_t> face;
@@ -53,9 +41,8 @@ struct Starts {
 
   Float3 direction(std::size_t i) const {
     const std::size_t at = directions.shape().empty() ? 0 : i;
-    return {as_float(directions.points().at(at, 0)),
-            as_float(directions.points().at(at, 1)),
-            as_float(directions.points().at(at, 2))};
+    const auto along = [&](std::size_t axis) { return as_float(directions.points().at(at, axis)); };
+    return {along(0), along(1), along(2)};
   }
 };
 
@@ -81,17 +68,21 @@ py::object start_points(const Model& model, const StartArguments& given) {
   const Wholes face(given.face, "face");
   if (!face)
     wrong_type("face", "whole numbers of shape (...)", given.face);
-  const Doubles u(given.u, "u");
-  const Doubles v(given.v, "v");
+  Doubles u(given.u, "u");
+  Doubles v(given.v, "v");
   Shape shape = directions.shape();
   share(shape, face.shape(), "face");
   share(shape, u.shape(), "u");
   share(shape, v.shape(), "v");
   directions.repeat(shape);
-  const Starts starts{faces_for(face, shape, model.geometry().triangles.size()),
-                      u.repeat(shape),
-                      v.repeat(shape),
-                      std::move(directions)};
+  u.fill(shape);
+  v.fill(shape);
+  const std::size_t faces = model.geometry().triangles.size();
+  const Starts starts{
+      face.repeat<std::uint32_t>(shape, "rows of " + std::to_string(faces) + " faces", 0, faces),
+      std::move(u.each),
+      std::move(v.each),
+      std::move(directions)};
   expect_on_faces(starts.u, starts.v);
   std::vector<Float3> origins;
   hear_signals(starts.u.size(),
