@@ -312,9 +312,9 @@ inline FrustumStats& stats_of(Packet& p, int width) {
   return width > kMiddle ? p.large_stats : width > kSmall ? p.middle_stats : p.small_stats;
 }
 
-/// Takes the live rays of a packet, `width` at most, through a grid, each from p.start on, as far as
-/// they go together, if those before did. Returns false if they are to go on from p.start in smaller
-/// packets. Leaves `live` unchanged on return.
+/// Takes the live rays of a packet, `width` at most, through a grid, each from p.start on, as far
+/// as they go together, if those before did. Returns false if they are to go on from p.start in
+/// smaller packets. Leaves `live` unchanged on return.
 template <bool kAny>
 inline bool walk_together(
     const GridView& g, Packet& p, int width, bool use_mailbox, TraceCounts& n) {
