@@ -80,13 +80,7 @@ class FarRays {
     w.groups = p.groups;
     w.has_units = false;
     w.has_slabs = false;
-    w.geometry = p.geometry;
-    w.base = g.lo_f;
-    w.frame_error = g.frame_error;
-    w.error_bound = g.error_bound + 32 * g.frame_error;
-    w.given = p.given;
-    w.given.shift = shift_;
-    w.filter = p.filter;
+    static_cast<RayFrame&>(w) = grid_frame(p, g, shift_);
     w.live = 0;
     each_live_group(p, [&](int i, int group) {
       if (set_group(g, i, group))

@@ -93,11 +93,7 @@ template <class Tests>
   moved.t_min = begin_from(r.t_min, to.shift);
   moved.best = round_t_up(r.best, to.shift);
   moved.low = round_t_down(r.low, to.shift);
-  moved.base = g.lo_f;
-  moved.frame_error = g.frame_error;
-  moved.error_bound = g.error_bound + 32 * g.frame_error;
-  moved.shift = to.shift;
-  moved.given.shift = &moved.shift;
+  static_cast<RayFrame&>(moved) = grid_frame(r, g, &to.shift);
   walk_one(in_grid_frame(g), moved, tests);
   if (moved.id == r.id)
     return;

@@ -3,9 +3,7 @@
 
 #include "grelha/stats.hpp"
 #include "kernel/base/vec3.hpp"
-#include "kernel/grid/view.hpp"
-#include "kernel/shapes/exact_hits.hpp"
-#include "kernel/traverse/ray_filter.hpp"
+#include "kernel/traverse/ray_frame.hpp"
 #include "kernel/traverse/slab.hpp"
 #include "kernel/traverse/tolerances.hpp"
 
@@ -14,7 +12,6 @@ namespace grelha::GRELHA_ISA {
 /// Most rays in a packet. A word has a bit for each group of lanes.
 inline constexpr int kPacket = kWidth<VFloat> == 1 ? 64 : 256;
 inline constexpr int kMostFields = 9;  ///< those of a triangle; see kKeepsFields
-inline constexpr float kInfinity = __builtin_inff();
 inline constexpr float kGreatest = 0x1.fffffep127f;
 
 /// Rows of floats that are to be read or written soon. Asked for line by line, with work between,
@@ -77,7 +74,7 @@ class SingleRayStats {
 /// are the end of the search.
 ///
 /// Rays from afar are copied into the frame of a grid: `given` holds the rays before that.
-struct Packet {
+struct Packet : RayFrame {
   alignas(64) float org[3][kPacket];
   alignas(64) float dir[3][kPacket];
   alignas(64) float t_min[kPacket];
@@ -95,11 +92,6 @@ struct Packet {
   int size, groups;
   Prefetcher ahead;    ///< sources of the next packet's rays, and targets of this one's answers
   std::uint64_t live;  ///< bit g: group g has a ray that still searches
-  const float* base = nullptr;    ///< x, y, z of where their frame begins; null: 0
-  float frame_error = 0;          ///< error of coordinates in the frame
-  float error_bound = kInfinity;  ///< see SimdRays
-  GivenRays given;
-  const RayFilter* filter = nullptr;  ///< null: rays hit everything
   alignas(64) float inv_dd[kPacket];
   alignas(64) float inv_length[kPacket];
   alignas(64) float shear[3][kPacket];
@@ -110,7 +102,6 @@ struct Packet {
   /// Fields of the primitive that a ray hits, as for_each_field() has them, if this is hit_field_id
   alignas(64) float hit_field[kMostFields][kPacket];
   alignas(64) float hit_field_id[kPacket];
-  const GeometryView* geometry = nullptr;
   FrustumStats small_stats, middle_stats, large_stats;  ///< of packets of up to 16, 64 and 256
   SingleRayStats single_ray_stats;
 };

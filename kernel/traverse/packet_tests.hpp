@@ -1,7 +1,8 @@
 #pragma once
 // Tests of the rays of a packet against one primitive (SIMD over rays).
 
-#include "kernel/traverse/packet.hpp"
+#include "kernel/traverse/counts.hpp"
+#include "kernel/traverse/take_hit.hpp"
 
 namespace grelha::GRELHA_ISA {
 
@@ -63,46 +64,14 @@ inline VUint ids_at(const Packet& p, int i) {
   return load_words<VFloat>(reinterpret_cast<const std::uint32_t*>(p.id + i));
 }
 
-/// Takes a hit that floats cannot tell from ray i's hit so far, or from the end of its search, and
-/// narrows the span of t of the first one.
+/// Takes hits of selected lanes from i on against one primitive, one by one.
 template <bool kAny>
-[[gnu::noinline, gnu::cold]] void record_tie(Packet& p, int i, std::uint32_t id) {
-  const ExactRay ray = p.given.ray(i);
-  const double shift = p.given.shift_of(i);
-  const std::uint32_t held = id_of(p.id[i]);
-  CrossingSpan span;
-  if (held == kNoPrimitive) {
-    if (!is_before_end(*p.geometry, ray, id))
-      return;
-    span = crossing_span(*p.geometry, ray, id, shift);
-    p.id[i] = bits_of(id);
-  } else if (is_closest(*p.geometry, ray, id, held, shift, span)) {
-    p.id[i] = bits_of(id);
-  }
-  p.best[i] = kAny ? -kInfinity : span.hi;
-  p.low[i] = kAny ? -kInfinity : span.lo;
-}
-
-/// As record(), of rays that leave out primitives.
-template <bool kAny>
-[[gnu::noinline]] void record_filtered(
-    Packet& p, int i, const HitInterval<VFloat>& found, unsigned candidates, std::uint32_t id) {
+[[gnu::noinline]] void take_hits(
+    Packet& p, int i, const HitInterval<VFloat>& found, unsigned lanes, std::uint32_t id) {
   float lo[kWidth<VFloat>], hi[kWidth<VFloat>];
   store(lo, found.lo);
   store(hi, found.hi);
-  each_bit(candidates, [&](int k) {
-    const int ray = i + k;
-    const std::uint32_t hit = p.filter->hit_of(ray, id);
-    if (hit == kNoPrimitive || hit == id_of(p.id[ray]))
-      return;
-    if (!(hi[k] < p.low[ray])) {
-      record_tie<kAny>(p, ray, hit);
-      return;
-    }
-    p.best[ray] = kAny ? -kInfinity : hi[k];
-    p.low[ray] = kAny ? -kInfinity : lo[k];
-    p.id[ray] = bits_of(hit);
-  });
+  each_bit(lanes, [&](int k) { take_hit<kAny>(p, i + k, {lo[k], hi[k]}, id); });
 }
 
 /// Notes hits of lanes from i on against one primitive: nearer wins, then the lower id. With kAny a
@@ -118,7 +87,7 @@ inline void record(Packet& p,
   if (none(candidate))
     return;
   if (p.filter) [[unlikely]] {
-    record_filtered<kAny>(p, i, found, bits(candidate), id);
+    take_hits<kAny>(p, i, found, bits(candidate), id);
     return;
   }
   const VFloat low = load<VFloat>(p.low + i);
@@ -140,21 +109,8 @@ inline void record(Packet& p,
           select(closer, VFloat(bits_of(id)), load<VFloat>(p.hit_field_id + i)));
   }
   const unsigned other = bits_where(ids_at(p, i) != id);
-  each_bit(bits(and_not(candidate, closer)) & other,
-           [&](int k) { record_tie<kAny>(p, i + k, id); });
-}
-
-/// Counts tests of a kind; those of a kind without a counter are not counted.
-template <class Shape>
-[[gnu::always_inline]] inline void count_tests(TraceCounts& n, unsigned tests) {
-  if constexpr (Shape::kKind == PrimitiveKind::kSphere)
-    n.tests.sphere += tests;
-  else if constexpr (Shape::kKind == PrimitiveKind::kTriangle)
-    n.tests.triangle += tests;
-  else if constexpr (Shape::kKind == PrimitiveKind::kCone)
-    n.tests.cone += tests;
-  else if constexpr (Shape::kKind == PrimitiveKind::kPlane)
-    n.tests.plane += tests;
+  if (const unsigned ties = bits(and_not(candidate, closer)) & other; ties != 0)
+    take_hits<kAny>(p, i, found, ties, id);
 }
 
 /// Tests all live rays against a primitive of a kind and counts that: runs `test(i, g)` for the

@@ -2,12 +2,12 @@
 // One ray, by itself or in a packet, and the values that tests read from either.
 
 #include "kernel/base/lanes_four.hpp"
-#include "kernel/traverse/packet_tests.hpp"
+#include "kernel/traverse/packet.hpp"
 
 namespace grelha::GRELHA_ISA {
 
 /// A ray by itself.
-struct Single {
+struct Single : RayFrame {
   float org[3], dir[3], t_min;
   float best, low;  ///< t of the hit so far lies from low to best; both are t_max without one
   std::uint32_t id;
@@ -17,16 +17,9 @@ struct Single {
   /// the side of a box that the ray hits first, along each axis; the other is 3 elements on or back
   int near[4];
   float inv_dd, inv_length;
-  float shear[4];  ///< and one element more
-  const float* base = nullptr;
-  float frame_error = 0;
-  float error_bound = kInfinity;
-  double shift = 0;
-  float unit;                      ///< length that t is counted in
-  float given_t_min, given_t_max;  ///< in the caller's lengths
-  GivenRays given;                 ///< the ray as it came, also in a moved copy
-  const RayFilter* filter = nullptr;
-  const GeometryView* geometry = nullptr;
+  float shear[4];                        ///< and one element more
+  float unit;                            ///< length that t is counted in
+  float given_t_min, given_t_max;        ///< in the caller's lengths
   const TriangleBlock* block = nullptr;  ///< of the last triangle that came first
 };
 
@@ -67,8 +60,7 @@ inline int axis_of(const Single& r) {
 inline std::uint32_t id_of(const Single& r) {
   return r.id;
 }
-/// The object that holds a ray's frame: its packet, or the ray itself.
-inline const Single& frame_of(const Single& r) {
+inline const RayFrame& frame_of(const Single& r) {
   return r;
 }
 inline void set_hit(Single& r, const CrossingSpan& t, std::uint32_t id) {
@@ -110,7 +102,7 @@ inline int axis_of(const PacketRay& r) {
 inline std::uint32_t id_of(const PacketRay& r) {
   return id_of(r.p.id[r.i]);
 }
-inline const Packet& frame_of(const PacketRay& r) {
+inline const RayFrame& frame_of(const PacketRay& r) {
   return r.p;
 }
 inline void set_hit(const PacketRay& r, const CrossingSpan& t, std::uint32_t id) {

@@ -2,47 +2,11 @@
 // Tests one ray at a time against blocks of primitives (SIMD over primitives), when the rays of a
 // packet have nothing left in common. stream_traversal.hpp takes such rays through grids.
 
-#include "kernel/traverse/single_ray.hpp"
+#include "kernel/traverse/counts.hpp"
+#include "kernel/traverse/take_hit.hpp"
 #include "kernel/traverse/slab.hpp"
 
 namespace grelha::GRELHA_ISA {
-
-/// Takes a hit that floats cannot tell from the hit so far, or from the end of the search, and
-/// narrows the span of t of the first one. Returns true if the search is over.
-template <bool kAny, class Ray>
-[[gnu::noinline, gnu::cold]] bool record_tie(Ray& r, std::uint32_t id) {
-  const std::uint32_t held = id_of(r);
-  const GivenRays& rays = frame_of(r).given;
-  const ExactRay ray = rays.ray(index_of(r));
-  const double shift = rays.shift_of(index_of(r));
-  const GeometryView& g = *frame_of(r).geometry;
-  CrossingSpan span;
-  if (held != kNoPrimitive) {
-    const bool is_first = is_closest(g, ray, id, held, shift, span);
-    set_hit(r, span, is_first ? id : held);
-  } else if (is_before_end(g, ray, id)) {
-    set_hit(r, crossing_span(g, ray, id, shift), id);
-  } else {
-    return false;
-  }
-  return kAny;
-}
-
-/// Takes one hit. Returns whether the search is over (kAny and something was hit).
-template <bool kAny, class Ray>
-[[gnu::always_inline]] inline bool take_hit(Ray& r, const CrossingSpan& t, std::uint32_t id) {
-  if (!(t.lo <= best_of(r)))
-    return false;
-  if (const RayFilter* const filter = frame_of(r).filter) [[unlikely]] {
-    id = filter->hit_of(index_of(r), id);
-    if (id == kNoPrimitive)
-      return false;
-  }
-  if (!(t.hi < low_of(r)))
-    return id != id_of(r) && record_tie<kAny>(r, id);
-  set_hit(r, t, id);
-  return kAny;
-}
 
 /// Takes the hits of a block in order of index. Returns whether the search is over.
 template <bool kAny, class Ray>
@@ -133,19 +97,6 @@ struct BlockSource {
     }
   }
 };
-
-/// Replaces TraceCounts when no caller asks for them: clearing these took up to a twentieth of a
-/// call for one ray.
-struct NoCounts {};
-
-/// Counts the rows of primitives that a ray is tested against.
-template <class Shape>
-inline void count_rows(TraceCounts& n, int rows, int width) {
-  n.rows.primitives += static_cast<unsigned>(rows);
-  count_tests<Shape>(n, static_cast<unsigned>(rows * width));
-}
-template <class Shape>
-inline void count_rows(NoCounts&, int, int) {}
 
 /// Callers count rows.
 template <bool kAny, class Ray>
