@@ -143,8 +143,9 @@ struct Shear {
   Real frame_error;  ///< what differences of coordinates are off by before they are rounded
 };
 
-/// Index of the axis the frame stands on; the other two follow cyclically.
-inline int shear_axis(float dx, float dy, float dz) {
+/// The axis along which a direction is largest, on which the frame stands; the other two follow
+/// cyclically.
+inline int largest_axis(float dx, float dy, float dz) {
   const float ax = magnitude(dx), ay = magnitude(dy), az = magnitude(dz);
   if (ax >= ay && ax >= az)
     return 0;
@@ -243,7 +244,7 @@ template <class Real>
 
 /// One ray and one triangle in double.
 inline RayAndTriangle<double> turned(const ExactRay& r, const float (&corner)[3][3]) {
-  const int k = shear_axis(
+  const int k = largest_axis(
       static_cast<float>(r.dir[0]), static_cast<float>(r.dir[1]), static_cast<float>(r.dir[2]));
   const auto turn = [k](const auto& v) {
     return Vec3<double>{v[kNextAxis[k]], v[kPreviousAxis[k]], v[k]};

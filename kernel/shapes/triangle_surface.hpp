@@ -42,7 +42,7 @@ template <class Real>
   weight = {load<Real>(number[15]), load<Real>(number[16]), load<Real>(number[17])};
 }
 
-/// Corners as they are, not permuted; `axis` is that of shear_axis().
+/// Corners as they are, not permuted; `axis` is that of largest_axis().
 template <class Real>
 inline TrianglePosition<Real> triangle_position(const Real& axis,
                                                 const Vec3<Real>& org,

@@ -70,14 +70,8 @@ class FrustumBuilder {
 
   /// The axis along which a ray crosses most cells.
   int steepest_axis(int ray) const {
-    int axis = 0;
-    float most = -1;
-    for (int a = 0; a < 3; ++a)
-      if (const float m = magnitude(p_.dir[a][ray] * g_.inv_cell_f[a]); m > most) {
-        most = m;
-        axis = a;
-      }
-    return axis;
+    const auto cells = [&](int a) { return p_.dir[a][ray] * g_.inv_cell_f[a]; };
+    return largest_axis(cells(0), cells(1), cells(2));
   }
 
   void set_axes(int first, int axis) {

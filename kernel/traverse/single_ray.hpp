@@ -178,7 +178,7 @@ inline bool prepare(Single& r, const Ray& ray, bool any_triangles) {
   r.inv_length = inverse_length(d, r.inv_dd);
   r.axis = 0;
   if (any_triangles) {
-    r.axis = shear_axis(d.x, d.y, d.z);
+    r.axis = largest_axis(d.x, d.y, d.z);
     const Vec3<float> q = permute_axes<float>(static_cast<float>(r.axis), d);
     store(r.shear, Four{q.x, q.y, 1, 1} / four(q.z));
     set_inverse(r, d);

@@ -30,7 +30,7 @@ ExactRay exact(const Ray& r) {
 class AllTests {
  public:
   AllTests(const MovedMesh& m, const Ray& ray)
-      : ray_(exact(ray)), k_(scalar::shear_axis(ray.dir.x, ray.dir.y, ray.dir.z)) {
+      : ray_(exact(ray)), k_(scalar::largest_axis(ray.dir.x, ray.dir.y, ray.dir.z)) {
     enter(m);
     dir_ = turned(ray_.dir);
     shear_ = {dir_.x / dir_.z, dir_.y / dir_.z, 1 / dir_.z, frame_error_};

@@ -61,7 +61,7 @@ OneHit one_hit(const ExactRay& ray,
   constexpr double kNever = std::numeric_limits<double>::infinity();
   if constexpr (Shape::kKind == PrimitiveKind::kTriangle) {
     const auto& d = ray.dir;
-    const int k = scalar::shear_axis(
+    const int k = scalar::largest_axis(
         static_cast<float>(d[0]), static_cast<float>(d[1]), static_cast<float>(d[2]));
     const int kx = scalar::kNextAxis[k];
     const int ky = scalar::kPreviousAxis[k];

@@ -35,7 +35,7 @@ TEST(TriangleCrossing, RaysPastAPlaneAreBehindIt) {
     const Float3 d = scaled(random.direction(), speed);
     const float t_min =
         leaves || random.chance(.5) ? 0.f : float(random.log_in(1e-6, 10) * size / speed);
-    const int k = scalar::shear_axis(d.x, d.y, d.z);
+    const int k = scalar::largest_axis(d.x, d.y, d.z);
     const scalar::RayAndTriangle<float> pair{
         permute_axes(o, k), permute_axes(d, k), vertices_of(s, k)};
     const bool is_past = scalar::past_plane(pair, t_min);

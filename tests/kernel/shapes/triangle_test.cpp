@@ -45,7 +45,7 @@ OneHit hit(const Float3& o, const Float3& d, const Shape& s, float t_min = 0, fl
 
 /// What is shaded.
 scalar::Vec3<double> weights(const Float3& o, const Float3& d, const Shape& s) {
-  const int k = scalar::shear_axis(d.x, d.y, d.z);
+  const int k = scalar::largest_axis(d.x, d.y, d.z);
   return scalar::weights_at<double>(scalar::to_double<0>(permute_axes(o, k)),
                                     scalar::to_double<0>(permute_axes(d, k)),
                                     scalar::to_double<0>(vertices_of(s, k)))
@@ -303,7 +303,7 @@ TEST(TriangleCorners, DepthStaysWithinThatOfTheCorners) {
     const OneHit h = hit(o, d, s, -kInf);
     if (!h.hit)
       continue;
-    const int k = scalar::shear_axis(d.x, d.y, d.z);
+    const int k = scalar::largest_axis(d.x, d.y, d.z);
     const auto depth = [&](const Float3& p) {
       const oracle::Real q[3] = {oracle::Real(p.x) - o.x,
                                  oracle::Real(p.y) - o.y,
