@@ -21,10 +21,13 @@ inline Four four(float x) {
 inline Four four(const float (&xyz)[3], float rest) {
   return Four{xyz[0], xyz[1], xyz[2], rest};
 }
-inline void store(float (&to)[4], const Four& a) {
+inline Four four(const float (&xyz)[3][1], float rest) {
+  return Four{*xyz[0], *xyz[1], *xyz[2], rest};
+}
+inline void store(float (&to)[4][1], const Four& a) {
   __builtin_memcpy(to, &a, sizeof a);
 }
-inline void store(std::int32_t (&to)[4], const FourInts& a) {
+inline void store(std::uint32_t (&to)[4][1], const FourInts& a) {
   __builtin_memcpy(to, &a, sizeof a);
 }
 

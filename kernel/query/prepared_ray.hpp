@@ -18,7 +18,7 @@ struct PreparedRay {
   ExactRay exact() const { return single.given.ray(0); }
   /// Its t in the caller's unit.
   ExactRay given(const ExactRay& ray) const {
-    return ray.in_units_of(1 / static_cast<double>(single.unit));
+    return ray.in_units_of(1 / static_cast<double>(*single.unit));
   }
 };
 

@@ -154,9 +154,9 @@ class CellDda {
   /// False: the ray does not come to the grid.
   [[gnu::always_inline]] bool start(const Single& r) {
     set_dda(r);
-    const float begin = first_t(r.t_min);
-    end_ = last_t(r.best);
-    if (!(r.best > r.t_min) || !(begin <= end_))
+    const float begin = first_t(*r.t_min);
+    end_ = last_t(*r.best);
+    if (!(*r.best > *r.t_min) || !(begin <= end_))
       return false;
     const FourInts up = inverse_ > four(0);
     up_ = masked(up, four(1));
@@ -201,7 +201,7 @@ class CellDda {
   /// As the free function does. The fourth lane stays where it is: its planes are never crossed.
   [[gnu::always_inline]] void set_dda(const Single& r) {
     const Four dir = four(r.dir, 0);
-    const Four least = four(min_advance(r.dir[0], r.dir[1], r.dir[2]));
+    const Four least = four(min_advance(*r.dir[0], *r.dir[1], *r.dir[2]));
     const Four cells = four(g_.inv_cell_f, 1);
     const FourInts n{g_.n[0], g_.n[1], g_.n[2], 1};
     place_ = (four(r.org, 0) - four(g_.lo_f, 0)) * cells;

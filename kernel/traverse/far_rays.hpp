@@ -7,11 +7,9 @@
 
 namespace grelha::GRELHA_ISA {
 
-inline bool starts_near(const GridView& g, const float (&org)[3]) {
-  bool near = true;
-  for (int a = 0; a < 3; ++a)
-    near &= org[a] >= g.near_lo[a] && org[a] <= g.near_hi[a];
-  return near;
+inline bool starts_near(const GridView& g, const Vec3<float>& org) {
+  const auto lies_near = [&](float x, int a) { return x >= g.near_lo[a] && x <= g.near_hi[a]; };
+  return lies_near(org.x, 0) && lies_near(org.y, 1) && lies_near(org.z, 2);
 }
 
 /// The point where a ray comes near a grid.
@@ -29,15 +27,15 @@ inline double position_at(double org, double dir, double t, double x) {
   return sum + (of_sum + (rest + of_from));
 }
 
-/// Returns false if the ray, which starts far from a grid, does not come to it from t_min to t_max.
+/// Returns false if ray i of a group, which starts far from a grid, surely does not come to it.
 /// Points on its way are off by 2^-100 of it; a second look would be off by that much of the first
 /// error.
-inline bool enter_far(const GridView& g,
-                      const float (&org)[3],
-                      const float (&dir)[3],
-                      double t_min,
-                      double t_max,
-                      Entry& to) {
+template <int K>
+inline bool enter_far(const GridView& g, const RayGroup<K>& rays, int i, Entry& to) {
+  const float org[3] = {rays.org[0][i], rays.org[1][i], rays.org[2][i]};
+  const float dir[3] = {rays.dir[0][i], rays.dir[1][i], rays.dir[2][i]};
+  const double t_min = rays.t_min[i];
+  const double t_max = rays.best[i];
   const DdaState<double> r = to_grid(g, org, dir);
   double t0 = -static_cast<double>(kInfinity);
   double t1 = static_cast<double>(kInfinity);
@@ -130,14 +128,8 @@ class FarRays {
     if (lanes == 0)
       return false;
     for (int k = i; k < i + kWidth<VFloat>; ++k) {
-      float org[3], dir[3];
-      for (int a = 0; a < 3; ++a) {
-        org[a] = p_.org[a][k];
-        dir[a] = p_.dir[a][k];
-      }
       Entry to{};
-      const bool comes =
-          (lanes >> (k - i) & 1) && enter_far(g, org, dir, p_.t_min[k], p_.best[k], to);
+      const bool comes = (lanes >> (k - i) & 1) && enter_far(g, p_, k, to);
       comes_[k] = comes;
       some |= comes;
       shift_[k] = to.shift;

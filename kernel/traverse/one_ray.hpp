@@ -13,9 +13,10 @@ template <bool kAny>
   InfiniteShapes::for_each([&]<class Shape>() __attribute__((always_inline)) {
     const typename Shape::Arrays& all = g.of<Shape>();
     for (std::uint32_t i = 0; !over && i < all.count; ++i) {
-      const HitInterval<float> found =
-          intersect<Shape>(spread<float>(r), broadcast<Shape, float>(all.fields, i), r.best);
-      over = found.some && take_hit<kAny>(r, {found.lo, found.hi}, g.ids.begin(Shape::kKind) + i);
+      const HitInterval<float> found = intersect<Shape>(
+          spread<float>(SingleRay{r}), broadcast<Shape, float>(all.fields, i), *r.best);
+      over = found.some &&
+             take_hit<kAny>(SingleRay{r}, {found.lo, found.hi}, g.ids.begin(Shape::kKind) + i);
     }
   });
   return over;
@@ -27,11 +28,11 @@ template <bool kAny>
 struct HitTests {
   static constexpr bool kInAnyOrder = kAny;  ///< of grids
   [[gnu::always_inline]] static bool block(Single& r, const TriangleBlock& block) {
-    return test_block<kAny>(r, block);
+    return test_block<kAny>(SingleRay{r}, block);
   }
   [[gnu::always_inline]] static bool arrays(Single& r, const CellLists& lists, std::size_t cell) {
     NoCounts n;
-    return test_arrays<kAny>(r, lists, cell, n);
+    return test_arrays<kAny>(SingleRay{r}, lists, cell, n);
   }
 };
 
@@ -44,13 +45,13 @@ inline bool visit_triangles(Single& r, const GridView& g, std::uint32_t cell, Te
   float enters[kBlock];
   for (std::uint32_t at = first / kBlock * kBlock; at < end; at += kBlock) {
     const TriangleBlock* const blocks = list.blocks + list.block_at(at);
-    for (unsigned passed =
-             hit_boxes(r, list.boxes[at / kBlock], enters) & blocks_between(at, first, end);
+    for (unsigned passed = hit_boxes(SingleRay{r}, list.boxes[at / kBlock], enters) &
+                           blocks_between(at, first, end);
          passed != 0;
          passed &= passed - 1) {
       const unsigned k = static_cast<unsigned>(__builtin_ctz(passed));
       // a hit found since may be nearer
-      if (enters[k] <= r.best && tests.block(r, blocks[k]))
+      if (enters[k] <= *r.best && tests.block(r, blocks[k]))
         return true;
     }
   }
@@ -76,7 +77,7 @@ inline void walk_one(const GridView& g, Single& r, Tests& tests) {
     if (distance == 0 && ((triangles && visit_triangles(r, g, cell, tests)) ||
                           (arrays && tests.arrays(r, g.lists, cell))))
       return;
-    if (!(distance >= kLeastLeap ? walk.leap(distance - 1, r.best) : walk.step(r.best)))
+    if (!(distance >= kLeastLeap ? walk.leap(distance - 1, *r.best) : walk.step(*r.best)))
       return;
   }
 }
@@ -85,23 +86,26 @@ inline void walk_one(const GridView& g, Single& r, Tests& tests) {
 template <class Tests>
 [[gnu::noinline]] void walk_one_far(const GridView& g, Single& r, Tests& tests) {
   Entry to;
-  if (!enter_far(g, r.org, r.dir, r.t_min, r.best, to))
+  if (!enter_far(g, r, 0, to))
     return;
   Single moved = r;
   for (int a = 0; a < 3; ++a)
-    moved.org[a] = to.org[a];
-  moved.t_min = begin_from(r.t_min, to.shift);
-  moved.best = round_t_up(r.best, to.shift);
-  moved.low = round_t_down(r.low, to.shift);
+    *moved.org[a] = to.org[a];
+  *moved.t_min = begin_from(*r.t_min, to.shift);
+  *moved.best = round_t_up(*r.best, to.shift);
+  *moved.low = round_t_down(*r.low, to.shift);
   static_cast<RayFrame&>(moved) = grid_frame(r, g, &to.shift);
   walk_one(in_grid_frame(g), moved, tests);
-  if (moved.id == r.id)
+  const std::uint32_t id = id_of(*moved.id);
+  if (id == id_of(*r.id))
     return;
   r.block = moved.block;
-  if (moved.best == -kInfinity)  // any hit
-    set_hit(r, {-kInfinity, -kInfinity}, moved.id);
+  if (*moved.best == -kInfinity)  // any hit
+    set_hit(SingleRay{r}, {-kInfinity, -kInfinity}, id);
   else
-    set_hit(r, {round_t_down(moved.low, -to.shift), round_t_up(moved.best, -to.shift)}, moved.id);
+    set_hit(SingleRay{r},
+            {round_t_down(*moved.low, -to.shift), round_t_up(*moved.best, -to.shift)},
+            id);
 }
 
 /// Takes one ray to the primitives that lie in no grid.
@@ -118,12 +122,12 @@ inline bool visit_outside(const CellLists& lists, Single& r, Tests& tests) {
 template <class Tests>
 inline void walk_scene(const SceneView& scene, Single& r, Tests& tests) {
   if (scene.outside.of<Sphere>().first)
-    r.error_bound = error_bound_in(scene, vec(r.org));
+    r.error_bound = error_bound_in(scene, take_vec<float>(r.org, 0));
   if (visit_outside(scene.outside, r, tests))
     return;
-  each_grid<Tests::kInAnyOrder>(scene, r.org, r.dir, r.t_min, [&](const GridView& g) {
+  each_grid<Tests::kInAnyOrder>(scene, r, [&](const GridView& g) {
     r.error_bound = g.error_bound;
-    if (starts_near(g, r.org))
+    if (starts_near(g, take_vec<float>(r.org, 0)))
       walk_one(g, r, tests);
     else
       walk_one_far(g, r, tests);
@@ -134,16 +138,17 @@ inline void walk_scene(const SceneView& scene, Single& r, Tests& tests) {
 /// test read, which are close in memory. `known` holds t, or is empty.
 inline float t_of(const Single& r, const ExactRay& ray, const CrossingSpan& known) {
   const GeometryView& g = *r.geometry;
-  if (r.block && g.ids.has(PrimitiveKind::kTriangle, r.id)) {
+  const std::uint32_t id = id_of(*r.id);
+  if (r.block && g.ids.has(PrimitiveKind::kTriangle, id)) {
     int place = 0;
     for (int k = 1; k < kBlock; ++k)
-      place = r.block->id[k] == r.id ? k : place;
+      place = r.block->id[k] == id ? k : place;
     const Triangle::Fields<float> met = triangle_of(*r.block, place);
     float t;
-    if (r.block->id[place] == r.id && round_plane_t(ray, met.corner, t))
+    if (r.block->id[place] == id && round_plane_t(ray, met.corner, t))
       return t;
   }
-  return rounded_t(g, ray, r.id, known);
+  return rounded_t(g, ray, id, known);
 }
 
 /// The closest hit of a ray, or with kAny any hit: its t must not be used then.
@@ -158,11 +163,12 @@ inline Hit trace_one(const SceneView& scene, const Ray& ray, const RayFilter* fi
   HitTests<kAny> tests;
   if (!test_infinite<kAny>(scene, r))
     walk_scene(scene, r, tests);
-  if (kAny || r.id == kNoPrimitive)
-    return {ray.t_max, r.id};
-  const ExactRay given_ray = r.given.ray(0).in_units_of(1 / static_cast<double>(r.unit));
-  const CrossingSpan span = r.unit == 1 ? CrossingSpan{r.low, r.best} : CrossingSpan{};
-  return {strictly_between(t_of(r, given_ray, span), ray.t_min, ray.t_max), r.id};
+  const std::uint32_t id = id_of(*r.id);
+  if (kAny || id == kNoPrimitive)
+    return {ray.t_max, id};
+  const ExactRay given_ray = r.given.ray(0).in_units_of(1 / static_cast<double>(*r.unit));
+  const CrossingSpan span = *r.unit == 1 ? CrossingSpan{*r.low, *r.best} : CrossingSpan{};
+  return {strictly_between(t_of(r, given_ray, span), ray.t_min, ray.t_max), id};
 }
 
 }  // namespace grelha::GRELHA_ISA

@@ -3,7 +3,7 @@
 
 #include "grelha/stats.hpp"
 #include "kernel/base/vec3.hpp"
-#include "kernel/traverse/ray_frame.hpp"
+#include "kernel/traverse/ray_group.hpp"
 #include "kernel/traverse/slab.hpp"
 #include "kernel/traverse/tolerances.hpp"
 
@@ -68,50 +68,22 @@ class SingleRayStats {
   unsigned left_out_ = 0;
 };
 
-/// Up to kPacket rays as arrays. A ray searches (t_min, best); best <= t_min switches it off.
-/// Elements between `size` and the end of the last group are switched off. `id` holds the bits of
-/// the nearest primitive so far, which is hit at a t from `low` to `best`; while there is none both
-/// are the end of the search.
-///
-/// Rays from afar are copied into the frame of a grid: `given` holds the rays before that.
-struct Packet : RayFrame {
-  alignas(64) float org[3][kPacket];
-  alignas(64) float dir[3][kPacket];
-  alignas(64) float t_min[kPacket];
-  alignas(64) float best[kPacket];
-  alignas(64) float low[kPacket];
-  alignas(64) float start[kPacket];  ///< t from which a grid is still to be searched
-  alignas(64) float id[kPacket];
-  /// where `has_units`: the length that t is counted in, and ends of searches in the caller's
-  alignas(64) float unit[kPacket];
-  alignas(64) float given_t_min[kPacket];
-  alignas(64) float given_t_max[kPacket];
-  bool has_units;
-  alignas(64) float axis[kPacket];           ///< of the shear: 0, 1 or 2
+/// Up to kPacket rays. best <= t_min switches a ray off, as it is between `size` and the end of the
+/// last group of lanes.
+struct Packet : RayGroup<kPacket> {
+  alignas(64) float start[kPacket];          ///< t from which a grid is still to be searched
   int group_axis[kPacket / kWidth<VFloat>];  ///< the axis all rays of a group share, or -1
   int size, groups;
-  Prefetcher ahead;    ///< sources of the next packet's rays, and targets of this one's answers
   std::uint64_t live;  ///< bit g: group g has a ray that still searches
-  alignas(64) float inv_dd[kPacket];
-  alignas(64) float inv_length[kPacket];
-  alignas(64) float shear[3][kPacket];
-  bool has_slabs;                         ///< the next two are set
-  alignas(64) float inverse[3][kPacket];  ///< of directions, no component 0
-  /// the side of a box that the ray hits first, along each axis
-  alignas(64) std::uint32_t near[3][kPacket];
+  bool has_units;      ///< `unit`, `given_t_min` and `given_t_max` are set
+  bool has_slabs;      ///< `inverse` and `near` are set
   /// Fields of the primitive that a ray hits, as for_each_field() has them, if this is hit_field_id
   alignas(64) float hit_field[kMostFields][kPacket];
   alignas(64) float hit_field_id[kPacket];
+  Prefetcher ahead;  ///< sources of the next packet's rays, and targets of this one's answers
   FrustumStats small_stats, middle_stats, large_stats;  ///< of packets of up to 16, 64 and 256
   SingleRayStats single_ray_stats;
 };
-
-inline std::uint32_t id_of(float bits) {
-  return static_cast<std::uint32_t>(float_bits(bits));
-}
-inline float bits_of(std::uint32_t id) {
-  return bits_float(static_cast<std::int32_t>(id));
-}
 
 /// Least size of a direction's components. A smaller one crosses no plane across its axis on any
 /// way that counts; with this in its place, no NaN appears.

@@ -99,9 +99,11 @@ class PairTests {
                                                    const TriangleBlock& block,
                                                    int i) {
     const PacketRay r{p_, static_cast<int>(ray)};
-    const Shear<Block> shear{
-        Block(shear_of(r, 0)), Block(shear_of(r, 1)), Block(shear_of(r, 2)), Block(p_.frame_error)};
-    const EdgeFunctions<Block> edge(BlockSource<PacketRay>{&r, &block, i}(), shear);
+    const Shear<Block> shear{Block(p_.shear[0][ray]),
+                             Block(p_.shear[1][ray]),
+                             Block(p_.shear[2][ray]),
+                             Block(p_.frame_error)};
+    const EdgeFunctions<Block> edge(BlockSource<PacketRay>{r, &block, i}(), shear);
     return bits(edge.may_cross());
   }
 
@@ -184,7 +186,7 @@ class PairTests {
   }
 
   void take(int pair, const CrossingSpan& t) {
-    PacketRay r{p_, ray(pair)};
+    const PacketRay r{p_, ray(pair)};
     const std::uint32_t id = blocks_[triangle_[pair] / kBlock].id[triangle_[pair] % kBlock];
     if (take_hit<kAny>(r, t, id))
       set_hit(r, {-kInfinity, -kInfinity}, id_of(r));

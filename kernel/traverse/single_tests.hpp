@@ -10,8 +10,8 @@ namespace grelha::GRELHA_ISA {
 
 /// Takes the hits of a block in order of index. Returns whether the search is over.
 template <bool kAny, class Ray>
-inline bool record(Ray& r, const HitInterval<Block>& found, const std::uint32_t* ids) {
-  unsigned lanes = bits(mask_and(found.some, found.lo <= Block(best_of(r))));
+inline bool record(Ray r, const HitInterval<Block>& found, const std::uint32_t* ids) {
+  unsigned lanes = bits(mask_and(found.some, found.lo <= Block(r.rays.best[r.i])));
   if (lanes == 0)
     return false;
   float lo[kWidth<Block>], hi[kWidth<Block>];
@@ -29,20 +29,20 @@ inline bool record(Ray& r, const HitInterval<Block>& found, const std::uint32_t*
 
 /// Bits of the boxes from i on that a ray passes through before its search ends; `enter`: t where.
 template <class Ray>
-[[gnu::always_inline]] inline unsigned hit_boxes_from(const Ray& r,
+[[gnu::always_inline]] inline unsigned hit_boxes_from(Ray r,
                                                       const BlockBoxes& boxes,
                                                       int i,
                                                       Block& enter) {
-  const float* const base = frame_of(r).base;
-  enter = Block(t_min_of(r));
-  Block leave(best_of(r));
+  const float* const base = r.rays.base;
+  enter = Block(r.rays.t_min[r.i]);
+  Block leave(r.rays.best[r.i]);
   for (int a = 0; a < 3; ++a) {
-    const Block org(origin(r, a)), inverse(inverse_of(r, a));
+    const Block org(r.rays.org[a][r.i]), inverse(r.rays.inverse[a][r.i]);
     const auto t_of_side = [&](int side) __attribute__((always_inline)) {
       const Block at = load<Block>(boxes.side[side] + i);
       return ((base ? at - Block(base[a]) : at) - org) * inverse;
     };
-    const int near = near_side(r, a);
+    const int near = static_cast<int>(r.rays.near[a][r.i]);
     clip_to_slab(t_of_side(near), t_of_side(2 * a + 3 - near), enter, leave);
   }
   return bits(enter <= leave);
@@ -50,7 +50,7 @@ template <class Ray>
 
 /// Bits of the boxes that a ray passes through before its search ends; `enters`: t where.
 template <class Ray>
-inline unsigned hit_boxes(const Ray& r, const BlockBoxes& boxes, float (&enters)[kBlock]) {
+inline unsigned hit_boxes(Ray r, const BlockBoxes& boxes, float (&enters)[kBlock]) {
   unsigned hit = 0;
   for (int i = 0; i < kBlock; i += kWidth<Block>) {
     Block enter;
@@ -70,25 +70,25 @@ inline unsigned blocks_between(std::uint32_t at, std::uint32_t first, std::uint3
 /// A ray and triangles of a block from i on.
 template <class Ray>
 struct BlockSource {
-  const Ray* r;
+  Ray r;
   const TriangleBlock* block;
   int i;
   RayAndTriangle<Block> operator()() const {
-    const int k = axis_of(*r);
+    const int k = static_cast<int>(r.rays.axis[r.i]);
     const int kx = kNextAxis[k];
     const int ky = kPreviousAxis[k];
-    const float* const base = frame_of(*r).base;
+    const float* const base = r.rays.base;
     const auto corner = [&](const float(&v)[3][kBlock]) {
       const Vec3<Block> at{load<Block>(v[kx] + i), load<Block>(v[ky] + i), load<Block>(v[k] + i)};
       return base ? at - Vec3<Block>{Block(base[kx]), Block(base[ky]), Block(base[k])} : at;
     };
-    return {{Block(origin(*r, kx)), Block(origin(*r, ky)), Block(origin(*r, k))},
-            {Block(direction(*r, kx)), Block(direction(*r, ky)), Block(direction(*r, k))},
+    return {{Block(r.rays.org[kx][r.i]), Block(r.rays.org[ky][r.i]), Block(r.rays.org[k][r.i])},
+            {Block(r.rays.dir[kx][r.i]), Block(r.rays.dir[ky][r.i]), Block(r.rays.dir[k][r.i])},
             {corner(block->a), corner(block->b), corner(block->c)}};
   }
-  float frame_error() const { return frame_of(*r).frame_error; }
-  ExactRay given(int) const { return frame_of(*r).given.ray(index_of(*r)); }
-  double shift(int) const { return frame_of(*r).given.shift_of(index_of(*r)); }
+  float frame_error() const { return r.rays.frame_error; }
+  ExactRay given(int) const { return r.rays.given.ray(r.i); }
+  double shift(int) const { return r.rays.given.shift_of(r.i); }
   void take_vertices(int k, float (&to)[3][3]) const {
     for (int a = 0; a < 3; ++a) {
       to[0][a] = block->a[a][i + k];
@@ -100,67 +100,69 @@ struct BlockSource {
 
 /// Callers count rows.
 template <bool kAny, class Ray>
-[[gnu::noinline]] bool test_block(Ray& r, const TriangleBlock& block) {
-  const Shear<Block> shear{Block(shear_of(r, 0)),
-                           Block(shear_of(r, 1)),
-                           Block(shear_of(r, 2)),
-                           Block(frame_of(r).frame_error)};
-  const Block t_min(t_min_of(r));
+[[gnu::noinline]] bool test_block(Ray r, const TriangleBlock& block) {
+  const Shear<Block> shear{Block(r.rays.shear[0][r.i]),
+                           Block(r.rays.shear[1][r.i]),
+                           Block(r.rays.shear[2][r.i]),
+                           Block(r.rays.frame_error)};
+  const Block t_min(r.rays.t_min[r.i]);
   const std::uint32_t before = id_of(r);
   for (int i = 0; i < kBlock; i += kWidth<Block>) {
-    const BlockSource<Ray> with{&r, &block, i};
-    if (record<kAny>(r, intersect_triangle(with, shear, t_min, Block(best_of(r))), block.id + i))
+    const BlockSource<Ray> with{r, &block, i};
+    if (record<kAny>(
+            r, intersect_triangle(with, shear, t_min, Block(r.rays.best[r.i])), block.id + i))
       return true;
   }
-  if constexpr (std::is_same_v<Ray, Single>) {
+  if constexpr (std::is_same_v<Ray, SingleRay>) {
     if (id_of(r) != before)
-      r.block = &block;
+      r.rays.block = &block;
   } else if (!kAny && id_of(r) != before) {
     for (int k = 0; k < kBlock; ++k)
       if (block.id[k] == id_of(r))
-        keep_hit_fields<Triangle>(r.p, r.i, triangle_of(block, k));
+        keep_hit_fields<Triangle>(r.rays, r.i, triangle_of(block, k));
   }
   return false;
 }
 
 /// One ray, for primitives side by side.
 template <class Real, class Ray>
-[[gnu::always_inline]] inline SimdRays<Real> spread(const Ray& r) {
-  return {.org = {Real(origin(r, 0)), Real(origin(r, 1)), Real(origin(r, 2))},
-          .dir = {Real(direction(r, 0)), Real(direction(r, 1)), Real(direction(r, 2))},
-          .inv_dd = Real(inverse_square(r)),
-          .inv_length = Real(inverse_length(r)),
-          .t_min = Real(t_min_of(r)),
-          .frame_error = Real(frame_of(r).frame_error),
-          .error_bound = Real(frame_of(r).error_bound),
-          .base = frame_of(r).base,
-          .given = &frame_of(r).given,
-          .first = index_of(r),
+[[gnu::always_inline]] inline SimdRays<Real> spread(Ray r) {
+  return {.org = {Real(r.rays.org[0][r.i]), Real(r.rays.org[1][r.i]), Real(r.rays.org[2][r.i])},
+          .dir = {Real(r.rays.dir[0][r.i]), Real(r.rays.dir[1][r.i]), Real(r.rays.dir[2][r.i])},
+          .inv_dd = Real(r.rays.inv_dd[r.i]),
+          .inv_length = Real(r.rays.inv_length[r.i]),
+          .t_min = Real(r.rays.t_min[r.i]),
+          .frame_error = Real(r.rays.frame_error),
+          .error_bound = Real(r.rays.error_bound),
+          .base = r.rays.base,
+          .given = &r.rays.given,
+          .first = r.i,
           .step = 0};
 }
 
 /// Primitives of one kind side by side, from element i of a list on; `ray` is r, spread. Returns
 /// whether the search is over. Callers count rows.
 template <bool kAny, class Shape, class Ray>
-[[gnu::always_inline]] inline bool test_row(Ray& r,
+[[gnu::always_inline]] inline bool test_row(Ray r,
                                             const SimdRays<Block>& ray,
                                             const typename Shape::CellList& list,
                                             std::uint32_t i) {
   const auto row = side_by_side<Shape, Block>(list.fields, i);
   const std::uint32_t before = id_of(r);
-  const bool over = record<kAny>(r, intersect<Shape>(ray, row, Block(best_of(r))), list.id + i);
+  const bool over =
+      record<kAny>(r, intersect<Shape>(ray, row, Block(r.rays.best[r.i])), list.id + i);
   if constexpr (!kAny && std::is_same_v<Ray, PacketRay> && kKeepsFields<Shape>)
     if (id_of(r) != before)
       for (std::uint32_t k = i; k < i + kWidth<Block>; ++k)
         if (list.id[k] == id_of(r))
-          keep_hit_fields<Shape>(r.p, r.i, one_of<Shape>(list.fields, k));
+          keep_hit_fields<Shape>(r.rays, r.i, one_of<Shape>(list.fields, k));
   return over;
 }
 
 /// Primitives of one kind in one cell. Reading past its end tests those of the next, which costs
 /// nothing and is never wrong: a hit is a hit.
 template <bool kAny, class Shape, class Ray, class Counts>
-[[gnu::always_inline]] inline bool test_list(Ray& r,
+[[gnu::always_inline]] inline bool test_list(Ray r,
                                              const typename Shape::CellList& list,
                                              std::size_t cell,
                                              Counts& n) {
@@ -183,7 +185,7 @@ inline bool holds_arrays(const CellLists& lists) {
 
 /// Tests the primitives in the arrays of one cell.
 template <bool kAny, class Ray, class Counts>
-[[gnu::noinline]] bool test_arrays(Ray& r, const CellLists& lists, std::size_t cell, Counts& n) {
+[[gnu::noinline]] bool test_arrays(Ray r, const CellLists& lists, std::size_t cell, Counts& n) {
   bool over = false;
   ArrayShapes::for_each([&]<class Shape>() __attribute__((always_inline)) {
     const typename Shape::CellList& list = lists.of<Shape>();

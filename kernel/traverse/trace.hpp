@@ -73,23 +73,20 @@ inline Real error_bound_in(const SceneView& scene, const Vec3<Real>& org) {
   return Real(static_cast<float>(2 * (kFarError + 1) * kUnit<float>)) * far;
 }
 
-/// t at which a ray enters a grid; infinity if it never does, or runs along a plane of the grid.
-inline float entry(const GridView& g, const float (&org)[3], const float (&dir)[3], float t_min) {
-  float t0 = t_min;
+/// t at which the first ray of a group enters a grid; infinity if it never does, or runs along a plane of the grid.
+template <int K>
+inline float entry(const GridView& g, const RayGroup<K>& rays) {
+  float t0 = rays.t_min[0];
   float t1 = kInfinity;
   for (int a = 0; a < 3; ++a)
-    clip_to_slab(g.lo_f[a], g.hi_f[a], org[a], 1 / dir[a], t0, t1);
+    clip_to_slab(g.lo_f[a], g.hi_f[a], rays.org[a][0], 1 / rays.dir[a][0], t0, t1);
   return t0 <= t1 ? t0 : kInfinity;
 }
 
-/// Visits the grids, for closest hits front to back as a ray hits them: early hits cut the other
+/// Visits the grids, for closest hits front to back as the first ray hits them: early hits cut the other
 /// searches short. Answers do not depend on the order, since ties go to the lower id.
-template <bool kAny, class Visit>
-inline void each_grid(const SceneView& scene,
-                      const float (&org)[3],
-                      const float (&dir)[3],
-                      float t_min,
-                      const Visit& visit) {
+template <bool kAny, int K, class Visit>
+inline void each_grid(const SceneView& scene, const RayGroup<K>& rays, const Visit& visit) {
   const int count = scene.grid_count;
   if (kAny || count < 2) {
     for (int g = 0; g < count; ++g)
@@ -99,7 +96,7 @@ inline void each_grid(const SceneView& scene,
   int order[kMostGrids];
   float at[kMostGrids];
   for (int g = 0; g < count; ++g) {
-    const float t = entry(scene.grids[g], org, dir, t_min);
+    const float t = entry(scene.grids[g], rays);
     int i = g;
     for (; i > 0 && at[i - 1] > t; --i) {
       at[i] = at[i - 1];
@@ -110,13 +107,6 @@ inline void each_grid(const SceneView& scene,
   }
   for (int i = 0; i < count; ++i)
     visit(scene.grids[order[i]]);
-}
-/// The same for a packet, as its first ray hits them.
-template <bool kAny, class Visit>
-inline void each_grid(const SceneView& scene, const Packet& p, const Visit& visit) {
-  const float org[3] = {p.org[0][0], p.org[1][0], p.org[2][0]};
-  const float dir[3] = {p.dir[0][0], p.dir[1][0], p.dir[2][0]};
-  each_grid<kAny>(scene, org, dir, p.t_min[0], visit);
 }
 
 /// The live rays of a packet through a grid.

@@ -181,7 +181,7 @@ void trace_ray(const SceneView& scene, WalkedRay& r, RayMailbox* box, TraceCount
     return;
   for (int i = 0; i < scene.grid_count; ++i) {
     const GridView& g = scene.grids[i];
-    if (starts_near(g, r.org) ? walk_grid<kAny>(r, g, box, n) : test_cells<kAny>(r, g, box, n))
+    if (starts_near(g, vec(r.org)) ? walk_grid<kAny>(r, g, box, n) : test_cells<kAny>(r, g, box, n))
       return;
   }
 }
