@@ -25,7 +25,7 @@ SECTIONS = {  # what a section's maker measures, by its marks
     "frame, profile": "frame-profile", "frame, povray": "frame-povray", "report": "report",
     "scale": "scale", "stability": "stability", "ranks": "ranks", "error_suite": "error-suite",
     "charts, picture": "charts-picture", "charts, grid": "charts-grid",
-    "charts, features": "charts-features", "exact": "exact", "filters": "filters",
+    "charts, features": "charts-features", "exact": "exact",
 }
 
 

@@ -18,9 +18,6 @@
 //             1e13 diagonals on either side, along axes and aslant, with ends of every kind:
 //             closest, occluded, all hits, counts, skip and masks, u and v, crossings are those of
 //             rational numbers
-//   filters   how many of 300 rays, in per cent, meet a triangle up to their first hit that floats
-//             do not decide, that doubles do not decide; whose first two hits are put in order by
-//             exact numbers. From afar floats test in a frame of the mesh, as grids do.
 //
 // A scene is a file or `GENERATOR SIZE`; only its triangles are used. Uses all processors.
 
@@ -44,8 +41,7 @@ constexpr Subject kSubjects[] = {{"rays", 1'000'000, judge_rays},
                                  {"inside", 100'000, judge_inside},
                                  {"distance", 100'000, judge_distance},
                                  {"queries", 1'000'000, judge_queries},
-                                 {"agreement", 1'000'000, judge_agreement},
-                                 {"filters", 300, count_filters}};
+                                 {"agreement", 1'000'000, judge_agreement}};
 
 }  // namespace
 
@@ -69,8 +65,7 @@ int main(int argc, char** argv) {
       std::printf("%zu wrong\n", wrong);
       return wrong == 0 ? 0 : 1;
     }
-  std::fprintf(
-      stderr,
-      "judge rays|inside|distance|queries|agreement|filters [--count N] [--scene NAME]...\n");
+  std::fprintf(stderr,
+               "judge rays|inside|distance|queries|agreement [--count N] [--scene NAME]...\n");
   return 2;
 }

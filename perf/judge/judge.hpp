@@ -37,7 +37,5 @@ std::size_t judge_distance(const JudgeOptions& options);
 std::size_t judge_agreement(const JudgeOptions& options);
 /// All hits, counts, skip, masks, u v of every kind against long double.
 std::size_t judge_queries(const JudgeOptions& options);
-/// The share of rays that leave each filter of the triangle test. Nothing can be wrong: returns 0.
-std::size_t count_filters(const JudgeOptions& options);
 
 }  // namespace grelha::perf
