@@ -75,8 +75,6 @@ def figures():
     told = {"povray": span(povray_ratios().values()),
             "targets": doc_tables.targets(povray_ratios(), profile),
             "ladder": doc_tables.ladder(rows_of("ladder")),
-            "density": doc_tables.density(rows_of("density")),
-            "density in words": doc_tables.density_in_words(rows_of("density")),
             "build": doc_tables.build(rows_of("build")),
             "embree": span([1 / r for r in ratios("ratio")]), "calls": span(calls),
             "calls in the mean": f"{math.exp(statistics.fmean(map(math.log, calls))):.2f}"}

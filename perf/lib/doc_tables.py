@@ -1,5 +1,4 @@
 """Tables of docs/performance.md that are made from a CSV, whenever perf/figures.py runs."""
-import statistics
 
 
 def table(header, rows):
@@ -15,26 +14,6 @@ def ladder(rows):
              if all((rung, *c) in cells for c in columns)]
     return table(["", *(f"{scene}, {rays} rays" for rays, scene in columns)],
                  [[rung, *(cells[(rung, *c)] for c in columns)] for rung in rungs])
-
-
-def density(rows):
-    """Time of a whole picture at another M over that at the kernel's."""
-    pictures = [r for r in rows if r["kind"] == "picture"]
-    of = {m: [float(r[m]) / float(r["0.7"]) for r in pictures]
-          for m in ("0.35", "0.5", "1", "1.4", "2", "3")}
-    return table(["M", "median", "largest", "smallest"],
-                 [[m, *(f"{f(v):.2f}" for f in (statistics.median, max, min))]
-                  for m, v in of.items()])
-
-
-def density_in_words(rows):
-    """What the kernel's choice costs: of pictures, and of rays of one kind."""
-    of = {kind: [float(r["over best"]) - 1 for r in rows if (r["kind"] == "picture") == kind]
-          for kind in (True, False)}
-    return (f"The choice is within {100 * max(of[True]):.0f} % of the best for each scene, in the "
-            f"median {100 * statistics.median(of[True]):.0f} %. Different kinds of rays\nneed "
-            f"different grids: {sum(v > .1 for v in of[False])} of {len(of[False])} pairs of scene "
-            "and kind are more than 10 % off their best.")
 
 
 def build(rows):
