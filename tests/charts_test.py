@@ -8,6 +8,7 @@ Exit status 77: a package the charts need is missing.
 import csv
 import html
 import importlib.util
+import json
 import pathlib
 import re
 import subprocess
@@ -301,6 +302,20 @@ class Smoke(unittest.TestCase):
             titles = re.findall(r"<title>[^<]*\./run",
                                 (self.folder / f"images/charts-{name}.svg").read_text())
             self.assertGreaterEqual(len(titles), len(rows) // 2, name)
+
+    def test_the_page_has_every_chart_and_asks_for_nothing_from_outside(self):
+        words = (self.folder / "report.html").read_text()
+        data = json.loads(re.search(r'<script id="data"[^>]*>(.*?)</script>', words, re.S)[1])
+        self.assertEqual({c["name"] for c in data["charts"]},
+                         {"picture", "picture-ssim", "grid", "grid-memory", "features"})
+        for shown in data["charts"]:
+            series = [s for panel in shown["panels"] for s in panel["series"]]
+            names = {(s["look"], s["name"]) for s in series}
+            self.assertEqual(len(names), len({look for look, _ in names}), "one marker for two")
+            self.assertTrue(all("./run" in p["command"] for s in series for p in s["points"]))
+        self.assertTrue(data["pictures"])
+        self.assertTrue(all(p.startswith("data:image/webp;base64,") for p in data["pictures"]))
+        self.assertNotRegex(words, r"""<[^<>]*\b(?:src|href)=["']?(?!#)\w""")
 
     def test_commands_repeat_the_pictures_errors(self):
         rows = self.rows("picture")
