@@ -127,8 +127,6 @@ void check_conflicts(const RenderCommand& command) {
   check_samples(command.effects);
   check_sampler(command.effects);
   check_grid(command.build);
-  if (!command.build.grid && !command.render.mailbox)
-    throw UsageError("--mailbox and --accel none: without a grid there are no mailboxes");
   check_long_work(command);
   check_tone(command.srgb, command.image, command.format);
   if (command.layers.any() && format_of(command.image, command.format) != ImageFormat::exr)

@@ -18,7 +18,6 @@ constexpr int kMaxThreads = 1024;
 using Word = std::pair<std::string_view, int>;
 using Name = std::pair<std::string_view, std::string_view>;
 constexpr std::array kAccelerators{Word{"grid", 1}, Word{"none", 0}};
-constexpr std::array kSwitch{Word{"on", 1}, Word{"off", 0}};
 constexpr std::array kPackets{Word{"1", 1}, Word{"16", 16}, Word{"64", 64}, Word{"256", 256}};
 constexpr std::array kIsas{Name{"scalar", "scalar"},
                            Name{"sse2", "sse2"},
@@ -223,13 +222,6 @@ void add_effects(CLI::App& sub, Effects& effects) {
 
 /// Adds the options for ray traversal.
 void add_traversal(CLI::App& sub, RenderCommand& command) {
-  value(sub,
-        "--mailbox",
-        "on|off",
-        "test a primitive once per ray however many cells hold it [on]",
-        [&command](const std::string& text) {
-          command.render.mailbox = choice("--mailbox", text, kSwitch) == 1;
-        });
   value(sub,
         "--isa",
         "scalar|sse2|avx2|avx512|best",

@@ -100,7 +100,6 @@ Json options_json(const RenderCommand& command) {
           {"min_weight", command.render.min_weight},
           {"density", simplify(command.build.density)},
           {"accel", command.build.grid ? "grid" : "none"},
-          {"mailbox", command.render.mailbox},
           {"isa", command.render.isa},
           {"packet", command.render.packet},
           {"samples", sampling.samples},

@@ -58,8 +58,6 @@ const Line kContradictions[] = {
      "--density and --accel none: without a grid there are no cells"},
     {"info a --density 2 --accel none",
      "--density and --accel none: without a grid there are no cells"},
-    {"render a --mailbox off --accel none",
-     "--mailbox and --accel none: without a grid there are no mailboxes"},
     {"render a -o a.hdr --layers depth",
      "--layers and -o: expected a .exr, which alone holds layers, found \"a.hdr\""},
     {"render a -o a.exr --layers depth,depth",

@@ -81,8 +81,7 @@ TEST(Render, ErrorAndTime) {
 TEST(Render, EveryOption) {
   const auto command = std::get<RenderCommand>(
       parse("render x.nff -o y.png --size 640x480 --threads 7 --depth 3 --min-weight .25 --density "
-            "2.5 --mailbox off "
-            "--isa avx2 --packet 16 --stats s.json --quiet --srgb"));
+            "2.5 --isa avx2 --packet 16 --stats s.json --quiet --srgb"));
   EXPECT_EQ(command.image, "y.png");
   EXPECT_EQ(command.width, 640);
   EXPECT_EQ(command.height, 480);
@@ -90,7 +89,6 @@ TEST(Render, EveryOption) {
   EXPECT_EQ(command.render.depth, 3);
   EXPECT_EQ(command.render.min_weight, .25);
   EXPECT_EQ(command.render.packet, 16);
-  EXPECT_FALSE(command.render.mailbox);
   EXPECT_EQ(command.render.isa, "avx2");
   EXPECT_FALSE(std::get<RenderCommand>(parse("render x.nff --accel none")).build.grid);
   EXPECT_EQ(command.build.density, 2.5f);
@@ -275,7 +273,6 @@ const Line kWrong[] = {
     {"render a --density 1e-60",
      "--density: expected a number above 0 and up to 1000, found \"1e-60\""},
     {"render a --accel bvh", "--accel: expected one of grid, none, found \"bvh\""},
-    {"render a --mailbox yes", "--mailbox: expected one of on, off, found \"yes\""},
     {"render a --isa neon",
      "--isa: expected one of scalar, sse2, avx2, avx512, best, found \"neon\""},
     {"render a --packet 8", "--packet: expected one of 1, 16, 64, 256, found \"8\""},
