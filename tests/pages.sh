@@ -14,8 +14,8 @@ completed() {  # completed() WORD...: what bash offers for the last of them
 expect() { [ "$1" = "$2" ] || fail "expected \"$2\", found \"$1\""; }
 expect "$(completed grelha re)" "render"
 expect "$(completed grelha render --samples)" "--samples --samples-map"
-expect "$(completed grelha render a.nff --accel '')" "grid none"
-expect "$(completed grelha render a.nff --isa av)" "avx2 avx512"
+expect "$(completed grelha render a.nff --format '')" "png hdr pfm exr"
+expect "$(completed grelha render a.nff --sampler r)" "random"
 expect "$(completed grelha render a.nff --sampler '')" "sobol blue jitter unshuffled random"
 expect "$(completed grelha render a.nff --aa '')" "off jitter: adaptive:"
 expect "$(completed grelha render a.nff --shadows r)" "random:"

@@ -105,6 +105,8 @@ CommandHelp help_of(const CLI::App& sub) {
       help.usage += (help.usage.empty() ? "" : " ") + (o->get_required() ? name : "[" + name + "]");
       continue;
     }
+    if (o->get_group().empty())
+      continue;  // kUnlisted
     OptionHelp option{{}, o->get_type_name(), o->get_description()};
     for (const std::string& name : o->get_snames())
       option.names.push_back("-" + name);

@@ -1,6 +1,6 @@
 #pragma once
-// The commands and options as data, taken from options.cpp. --help, the man page and the shell
-// completions are generated from it.
+// The commands and the options for users as data, taken from options.cpp. --help, the man page and
+// the shell completions are generated from it.
 
 #include <string>
 #include <vector>

@@ -34,6 +34,9 @@ CLI::Option* value(CLI::App& app,
   return app.add_option_function<std::string>(names, std::move(take), help)->type_name(placeholder);
 }
 
+/// Of an option for developers: it works, but help, man page and completions leave it out.
+constexpr char kUnlisted[] = "";
+
 /// Adds files that stand by their place; an empty name, as an unset variable gives, is none.
 template <class Names>
 void positional(CLI::App& app, const char* name, Names& target, const char* help) {
@@ -76,7 +79,8 @@ void add_build_options(CLI::App& app, BuildOptions& build) {
         "none: every ray meets every primitive [grid]",
         [&build](const std::string& text) {
           build.grid = choice("--accel", text, kAccelerators) == 1;
-        });
+        })
+      ->group(kUnlisted);
 }
 
 void add_long_work(CLI::App& app, LongWork& work) {
@@ -226,14 +230,16 @@ void add_traversal(CLI::App& sub, RenderCommand& command) {
         "--isa",
         "scalar|sse2|avx2|avx512|best",
         "instruction set [best]",
-        [&command](const std::string& text) { command.render.isa = choice("--isa", text, kIsas); });
+        [&command](const std::string& text) { command.render.isa = choice("--isa", text, kIsas); })
+      ->group(kUnlisted);
   value(sub,
         "--packet",
         "1|16|64|256",
         "most rays that march together [256]",
         [&command](const std::string& text) {
           command.render.packet = choice("--packet", text, kPackets);
-        });
+        })
+      ->group(kUnlisted);
 }
 
 void add_render(CLI::App& app, RenderCommand& command) {

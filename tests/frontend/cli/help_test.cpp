@@ -39,10 +39,12 @@ TEST(Help, FitsAScreenAndSaysHow) {
     EXPECT_NE(text.find("Usage: grelha"), std::string::npos) << line;
     EXPECT_NE(text.find("Example"), std::string::npos) << line;
   }
-  EXPECT_EQ(std::get<TextCommand>(parse("render --help")).text.find("--packet"), std::string::npos);
+  EXPECT_EQ(std::get<TextCommand>(parse("render --help")).text.find("--layers"), std::string::npos);
   for (const char* line : {"render --help-all", "--help-all"}) {
     const std::string text = std::get<TextCommand>(parse(line)).text;
-    EXPECT_NE(text.find("--packet"), std::string::npos) << line;
+    EXPECT_NE(text.find("--layers"), std::string::npos) << line;
+    for (const char* unlisted : {"--packet", "--isa", "--accel"})
+      EXPECT_EQ(text.find(unlisted), std::string::npos) << line << ' ' << unlisted;
     EXPECT_LE(widest(text), 80u) << line;
   }
   EXPECT_EQ(std::get<TextCommand>(parse("--version")).text.find("grelha "), 0u);
