@@ -182,11 +182,6 @@ def script(name):
 def figure_of(name):
     """The chart of docs/images/ of that name, drawn from its CSV."""
     module, saved = script(name), Saved()
-    if name == "error_time":
-        with tempfile.TemporaryDirectory() as folder:
-            module.draw(list(module.from_csv(bench.read_csv("error-time"))), 192,
-                        pathlib.Path(folder) / "chart.png")
-        return bench.plt.gcf()
     if hasattr(module, "write_csv"):  # trace, build
         known = module.cells_from_csv() if name == "trace" else module.rows_from_csv()
         with tempfile.TemporaryDirectory() as folder, unittest.mock.patch(
@@ -210,7 +205,7 @@ def words_of(figure):
 
 class Benchmarks(unittest.TestCase):
     """The other charts of docs/."""
-    names = ("trace", "build", "scale", "frame", "ranks", "report", "error_time")
+    names = ("trace", "build", "scale", "frame", "ranks", "report")
 
     @classmethod
     def setUpClass(cls):
@@ -222,8 +217,6 @@ class Benchmarks(unittest.TestCase):
 
     def test_each_is_of_its_csv(self):
         for name, figure in self.figures.items():
-            if name == "error_time":
-                continue  # a PNG
             shown = html.unescape((ROOT / f"docs/images/{name}.svg").read_text())
             self.assertEqual({words
                               for words in words_of(figure)

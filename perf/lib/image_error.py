@@ -1,5 +1,5 @@
-"""How far a picture lies from its reference, and how references are made and kept: what error_time,
-error_check and charts share."""
+"""How far a picture lies from its reference, and how references are made and kept: what error_suite
+and charts share."""
 import hashlib
 import json
 import math
