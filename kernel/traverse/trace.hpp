@@ -83,8 +83,8 @@ inline float entry(const GridView& g, const RayGroup<K>& rays) {
   return t0 <= t1 ? t0 : kInfinity;
 }
 
-/// Visits the grids, for closest hits front to back as the first ray hits them: early hits cut the other
-/// searches short. Answers do not depend on the order, since ties go to the lower id.
+/// Visits the grids, for closest hits front to back as the first ray hits them: early hits cut the
+/// other searches short. Answers do not depend on the order, since ties go to the lower id.
 template <bool kAny, int K, class Visit>
 inline void each_grid(const SceneView& scene, const RayGroup<K>& rays, const Visit& visit) {
   const int count = scene.grid_count;
