@@ -287,6 +287,8 @@ template <class Real, class Source>
     found.some = and_not(found.some, past);
   }
   replace_selected(bits(selected), found, [&](int k) {
+    if (source.leaves_out(k))
+      return CrossingSpan{};
     float corner[3][3];
     source.take_vertices(k, corner);
     return triangle_span(source.given(k), corner, source.shift(k));

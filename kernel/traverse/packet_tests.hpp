@@ -74,6 +74,13 @@ template <bool kAny>
   each_bit(lanes, [&](int k) { take_hit<kAny>(p, i + k, {lo[k], hi[k]}, id); });
 }
 
+/// True if one of the rays from i on does not hit primitive `id` itself where it crosses it.
+inline bool filters_some(const Packet& p, int i, unsigned lanes, std::uint32_t id) {
+  bool some = false;
+  each_bit(lanes, [&](int k) { some |= p.filter->hit_of(i + k, id) != id; });
+  return some;
+}
+
 /// Notes hits of lanes from i on against one primitive: nearer wins, then the lower id. With kAny a
 /// hit ends the ray's search.
 template <bool kAny, class Shape>
@@ -86,7 +93,7 @@ inline void record(Packet& p,
   const Mask<VFloat> candidate = mask_and(found.some, found.lo <= best);
   if (none(candidate))
     return;
-  if (p.filter) [[unlikely]] {
+  if (p.filter && filters_some(p, i, bits(candidate), id)) [[unlikely]] {
     take_hits<kAny>(p, i, found, bits(candidate), id);
     return;
   }
@@ -152,6 +159,7 @@ struct TriangleSource {
   const Triangle::Fields<float>& as_it_is;
   const float (*corner)[3];
   int i, axis;
+  std::uint32_t id;
 
   RayAndTriangle<VFloat> operator()() const {
     if constexpr (kShareAxis)
@@ -162,6 +170,7 @@ struct TriangleSource {
   float frame_error() const { return p.frame_error; }
   ExactRay given(int k) const { return p.given.ray(i + k); }
   double shift(int k) const { return p.given.shift_of(i + k); }
+  bool leaves_out(int k) const { return p.leaves_out(i + k, id); }
   void take_vertices(int, float (&to)[3][3]) const {
     __builtin_memcpy(to, as_it_is.corner, sizeof to);
   }
@@ -211,7 +220,7 @@ template <bool kAny>
         const float(*const corner)[3] = p.base ? framed.corner : triangle.corner;
         const int axis = p.group_axis[g];
         const auto found = [&]<bool kShareAxis>() __attribute__((always_inline)) {
-          const TriangleSource<kShareAxis> source{p, triangle, corner, i, axis};
+          const TriangleSource<kShareAxis> source{p, triangle, corner, i, axis, id};
           return intersect_triangle(source, shear, t_min, best);
         };
         record<kAny, Triangle>(

@@ -132,12 +132,18 @@ class PairTests {
     float frame_error() const { return tests->p_.frame_error; }
     ExactRay given(int k) const { return tests->p_.given.ray(tests->ray(pair(k))); }
     double shift(int k) const { return tests->p_.given.shift_of(tests->ray(pair(k))); }
+    bool leaves_out(int k) const {
+      return tests->p_.leaves_out(tests->ray(pair(k)), tests->id(pair(k)));
+    }
     void take_vertices(int k, float (&to)[3][3]) const {
       const Triangle::Fields<float> t = tests->triangle(pair(k));
       __builtin_memcpy(to, t.corner, sizeof to);
     }
   };
 
+  std::uint32_t id(int pair) const {
+    return blocks_[triangle_[pair] / kBlock].id[triangle_[pair] % kBlock];
+  }
   int ray(int pair) const { return static_cast<int>(ray_[pair]); }
   Triangle::Fields<float> triangle(int pair) const {
     return triangle_of(blocks_[triangle_[pair] / kBlock],
@@ -187,10 +193,9 @@ class PairTests {
 
   void take(int pair, const CrossingSpan& t) {
     const PacketRay r{p_, ray(pair)};
-    const std::uint32_t id = blocks_[triangle_[pair] / kBlock].id[triangle_[pair] % kBlock];
-    if (take_hit<kAny>(r, t, id))
+    if (take_hit<kAny>(r, t, id(pair)))
       set_hit(r, {-kInfinity, -kInfinity}, id_of(r));
-    else if (!kAny && id_of(r) == id)
+    else if (!kAny && id_of(r) == id(pair))
       keep_hit_fields<Triangle>(p_, r.i, triangle(pair));
   }
 

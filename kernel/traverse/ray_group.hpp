@@ -18,6 +18,11 @@ struct RayFrame {
   const float* base = nullptr;        ///< x, y, z of where the frame begins; null: 0
   float frame_error = 0;              ///< error of coordinates in the frame
   float error_bound = kInfinity;      ///< see SimdRays
+
+  /// True if ray i hits nothing where it crosses primitive `id`.
+  bool leaves_out(int i, std::uint32_t id) const {
+    return filter && filter->hit_of(i, id) == kNoPrimitive;
+  }
 };
 
 /// The same in the frame of a grid; `shift` as in GivenRays.

@@ -89,6 +89,7 @@ struct BlockSource {
   float frame_error() const { return r.rays.frame_error; }
   ExactRay given(int) const { return r.rays.given.ray(r.i); }
   double shift(int) const { return r.rays.given.shift_of(r.i); }
+  bool leaves_out(int k) const { return r.rays.leaves_out(r.i, block->id[i + k]); }
   void take_vertices(int k, float (&to)[3][3]) const {
     for (int a = 0; a < 3; ++a) {
       to[0][a] = block->a[a][i + k];
