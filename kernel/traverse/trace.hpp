@@ -73,7 +73,8 @@ inline Real error_bound_in(const SceneView& scene, const Vec3<Real>& org) {
   return Real(static_cast<float>(2 * (kFarError + 1) * kUnit<float>)) * far;
 }
 
-/// t at which the first ray of a group enters a grid; infinity if it never does, or runs along a plane of the grid.
+/// t at which the first ray of a group enters a grid; infinity if it never does, or runs along a
+/// plane of the grid.
 template <int K>
 inline float entry(const GridView& g, const RayGroup<K>& rays) {
   float t0 = rays.t_min[0];
