@@ -135,7 +135,7 @@ FAULTS = [
           "kPassHeight = 0x1p-18f;", "kPassHeight = 0;", "cone", "ConeOracle.Keeps*"),
     Fault("groups of rays held against one end of a cone", "kernel/shapes/cone.hpp",
           "return max(base, apex) + load<VFloat>(f.group_c", "return base + load<VFloat>(f.group_c",
-          "walk", "*avx2_cones"),
+          "walk", "*avx2_cones", simd=True),
     Fault("planes that floats know", "kernel/shapes/plane.hpp", "units<Real>(16) * dot(sizes(to)",
           "units<Real>(0) * dot(sizes(to)", "plane", "PlaneOracle.*"),
     Fault("floats next to doubles as they come", "kernel/shapes/refine_span.hpp",
