@@ -22,6 +22,7 @@ CellBox cell_box(const Grid& g, std::size_t cell) {
 GridView Grid::view() const {
   GridView v;
   v.lists = store.lists();
+  v.levels = levels.view();
   v.distance = distance.data();
   const std::size_t count = cell_count(cells);
   v.field_stride = distance_fields(count) > 1 ? static_cast<std::uint32_t>(count) : 0;
@@ -68,7 +69,7 @@ GridStats Grid::stats() const {
       cells,
       occupied,
       store.references,
-      store.bytes() + bytes_of(distance),
+      store.bytes() + bytes_of(distance) + levels.bytes(),
   };
 }
 

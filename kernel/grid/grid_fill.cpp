@@ -380,6 +380,7 @@ void fill_grid(const Primitives& p,
   g.occupied = fill(filling, finder, g.distance.data(), share);
   g.store = std::move(filling.store);
   compute_distances(g.distance, g.cells, fields, thread_count_for(threads, cells));
+  g.levels = build_box_levels(g);
 }
 
 CellStore build_list(const Primitives& p, std::span<const std::uint32_t> ids) {

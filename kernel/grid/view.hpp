@@ -18,8 +18,18 @@ struct CellLists : PerShape<CellListOf, FiniteShapes> {};
 
 inline constexpr int kMostGrids = 17;
 
+/// Boxes over cells, eight a node; see box_levels.hpp.
+struct BoxLevelsView {
+  static constexpr int kMostLevels = 11;  ///< of 8^11 = 2^33 cells
+  const BlockBoxes* rows = nullptr;
+  const std::uint32_t* cells = nullptr;
+  std::uint32_t first[kMostLevels] = {};  ///< row of each level; of the last there is one
+  int levels = 0;
+};
+
 struct GridView {
   CellLists lists;
+  BoxLevelsView levels;
   /// rays that start outside of this box are moved into the frame of the grid first
   float near_lo[3] = {}, near_hi[3] = {};
   float error_bound = 0;  ///< SimdRays::error_bound of rays that start within it

@@ -4,6 +4,7 @@
 
 #include "kernel/shade/strip.hpp"
 #include "kernel/query/loops.hpp"
+#include "kernel/query/nearest_search.hpp"
 
 namespace grelha::GRELHA_ISA {
 
@@ -12,6 +13,7 @@ const VariantLoops kLoops{.closest = closest,
                           .occluded = occluded,
                           .closest_one = closest_one,
                           .occluded_one = occluded_one,
+                          .closest_points = closest_points,
                           .render_strip = render_strip,
                           .render_runs = render_runs,
                           .render_points = render_points};

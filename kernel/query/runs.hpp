@@ -13,7 +13,7 @@ struct RunLengths {
   std::size_t first, most;
 };
 inline constexpr RunLengths kRays{64, 1024};  ///< whole packets
-inline constexpr RunLengths kPoints{1, 1};    ///< some take 2 us, and the next may take 100 ms
+inline constexpr RunLengths kPoints{1, 64};   ///< some take 1 us, and the next may take 50 ms
 
 /// Calls work(first, end) for runs of elements that together are [0, count), on options.threads
 /// threads. Throws Stopped once options.progress returns false, and the first exception of work().

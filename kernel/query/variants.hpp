@@ -5,6 +5,7 @@
 #include <span>
 #include <string_view>
 
+#include "grelha/distance.hpp"
 #include "grelha/part.hpp"
 #include "grelha/query.hpp"
 #include "kernel/scene/shading_view.hpp"
@@ -20,6 +21,15 @@ using ClosestLoop =
 using OccludedLoop =
     void (*)(const SceneView&, const Rays&, std::uint8_t*, const TraceOptions&, TraceCounts&);
 
+/// Finds the closest points of [count] points. `near`: what is closest to a neighbour of the first,
+/// or kNoPrimitive; returns what is closest to the last.
+using ClosestPointsLoop = std::uint32_t (*)(const SceneView&,
+                                            const Float3*,
+                                            std::size_t count,
+                                            float radius,
+                                            std::uint32_t near,
+                                            ClosestPoint*);
+
 /// The functions of one instruction set.
 struct VariantLoops {
   ClosestLoop closest;
@@ -27,6 +37,7 @@ struct VariantLoops {
   /// One ray by itself, and what it leaves out, or null.
   Hit (*closest_one)(const SceneView&, const Ray&, const Filter*);
   bool (*occluded_one)(const SceneView&, const Ray&, const Filter*);
+  ClosestPointsLoop closest_points;
   void (*render_strip)(const SceneView&,
                        const ShadingView&,
                        const FrameView&,

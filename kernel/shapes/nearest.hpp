@@ -1,6 +1,8 @@
 #pragma once
 // The point of a primitive that is nearest to a given one, in double.
 
+#include <type_traits>
+
 #include "kernel/shapes/geometry_view.hpp"
 
 namespace grelha::GRELHA_ISA {
@@ -11,51 +13,69 @@ inline Point point_of(const float (&v)[3]) {
   return {v[0], v[1], v[2]};
 }
 
+template <class Vector>
+using NumberOf = std::remove_cvref_t<decltype(Vector::x)>;
+
+[[gnu::always_inline]] inline WideVector select(bool m, const WideVector& a, const WideVector& b) {
+  return m ? a : b;
+}
+
 /// Of a segment.
 template <class Vector>
-inline Vector nearest_on_segment(const Vector& p, const Vector& a, const Vector& b) {
-  using Number = decltype(a.x + a.x);
+[[gnu::always_inline]] inline Vector nearest_on_segment(const Vector& p,
+                                                        const Vector& a,
+                                                        const Vector& b) {
   const Vector along = b - a;
-  const Number squared = dot(along, along);
-  const Number product = dot(p - a, along);
-  if (!(product > 0))
-    return a;
-  return product < squared ? a + (product / squared) * along : b;
+  const auto squared = dot(along, along);
+  const auto product = dot(p - a, along);
+  const NumberOf<Vector> share = product / squared;
+  const Vector before_b = select(product < squared, a + share * along, b);
+  return select(product > NumberOf<Vector>(0), before_b, a);
 }
 
 /// Of the region that the vertices of a triangle belong to (Ericson, Real-Time Collision Detection,
-/// 2005, 5.1.5): a vertex, an edge or the face; n is (b - a) x (c - a).
+/// 2005, 5.1.5): a vertex, an edge or the face; n is (b - a) x (c - a). Of one, or of many side by
+/// side: the same bits.
 template <class Vector>
-inline Vector nearest_on_triangle(
+[[gnu::always_inline]] inline Vector nearest_on_triangle(
     const Vector& p, const Vector& a, const Vector& b, const Vector& c, const Vector& n) {
-  const auto nn = dot(n, n);
-  const auto inside = [&](const Vector& from, const Vector& to) {
-    return !(dot(cross(to - from, p - from), n) < 0);
+  const NumberOf<Vector> nn = dot(n, n);
+  const auto outside = [&](const Vector& from, const Vector& to) {
+    return dot(cross(to - from, p - from), n) < NumberOf<Vector>(0);
   };
-  if (nn > 0 && inside(a, b) && inside(b, c) && inside(c, a)) {
-    Vector way = p - a;  // from the nearest corner: the product is off by as much less
-    for (const Vector& from : {p - b, p - c})
-      if (dot(from, from) < dot(way, way))
-        way = from;
-    return p - (dot(way, n) / nn) * n;
-  }
+  const auto beside = mask_or(mask_or(outside(a, b), outside(b, c)), outside(c, a));
+  Vector way = p - a;  // from the nearest corner: the product is off by as much less
+  const auto shorten = [&](const Vector& from) {
+    way = select(dot(from, from) < dot(way, way), from, way);
+  };
+  shorten(p - b);
+  shorten(p - c);
+  const NumberOf<Vector> share = dot(way, n) / nn;
   Vector best = nearest_on_segment(p, a, b);
-  for (const Vector& at : {nearest_on_segment(p, b, c), nearest_on_segment(p, c, a)})
-    if (dot(at - p, at - p) < dot(best - p, best - p))
-      best = at;
-  return best;
+  const auto compare = [&](const Vector& at) {
+    best = select(dot(at - p, at - p) < dot(best - p, best - p), at, best);
+  };
+  compare(nearest_on_segment(p, b, c));
+  compare(nearest_on_segment(p, c, a));
+  return select(and_not(nn > NumberOf<Vector>(0), beside), p - share * n, best);
 }
 
 /// Squared, of what the area of a triangle is of the product of two edges: doubles lose the normal
 /// of thinner ones, so numbers of 106 bits find their points.
 inline constexpr double kThin = 0x1p-12;
 
+/// True of triangles whose normal doubles lose.
+template <class Vector>
+[[gnu::always_inline]] inline auto is_thin(const Vector& to_b, const Vector& to_c, const Vector& n) {
+  return dot(n, n) < NumberOf<Vector>(kThin) * (dot(to_b, to_b) * dot(to_c, to_c));
+}
+
 inline Point nearest_on(const Point& p, const Triangle::Fields<float>& triangle) {
   const Point a = point_of(triangle.corner[0]);
   const Point b = point_of(triangle.corner[1]);
   const Point c = point_of(triangle.corner[2]);
   const Point n = cross(b - a, c - a);
-  if (dot(n, n) >= kThin * (dot(b - a, b - a) * dot(c - a, c - a)))
+  if (!is_thin(b - a, c - a, n))
     return nearest_on_triangle(p, a, b, c, n);
   const auto wide = [](const Point& v) { return WideVector{v.x, v.y, v.z}; };
   const WideVector found = nearest_on_triangle(

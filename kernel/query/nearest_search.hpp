@@ -1,0 +1,273 @@
+#pragma once
+// The search for the point of a scene that is nearest to another: down levels of boxes, the nearest
+// first.
+
+#include "grelha/distance.hpp"
+#include "kernel/grid/view.hpp"
+#include "kernel/shapes/distance_bound.hpp"
+#include "kernel/shapes/foot.hpp"
+#include "kernel/shapes/nearest.hpp"
+
+namespace grelha::GRELHA_ISA {
+
+/// Times distance: error of what doubles say of it, and of coordinates (docs/numerics.md).
+inline constexpr double kDistanceError = 0x1p-44;
+
+/// Boxes that wait to be looked into, each nearer than those below it of its node.
+class BoxStack {
+ public:
+  struct Entry {
+    float squared;  ///< distance
+    int level;      ///< of the row that the box stands for; -1: a cell
+    std::uint32_t index;
+  };
+
+  bool empty() const { return size_ == 0; }
+  Entry pop() { return entry_[--size_]; }
+  /// Boxes k of a row, `first` + k on the level below, by bits.
+  void push(unsigned boxes, const float (&squared)[kBlock], int level, std::uint32_t first) {
+    const int bottom = size_;
+    each_bit(boxes, [&](int k) {
+      int at = size_++;
+      for (; at > bottom && entry_[at - 1].squared < squared[k]; --at)
+        entry_[at] = entry_[at - 1];
+      entry_[at] = {squared[k], level, first + static_cast<std::uint32_t>(k)};
+    });
+  }
+
+ private:
+  /// A node leaves its eight children, of which one is taken.
+  Entry entry_[(kBlock - 1) * BoxLevelsView::kMostLevels + kBlock];
+  int size_ = 0;
+};
+
+/// Finds the nearest point. Of each primitive that may be nearest doubles tell the distance, which
+/// is a function of point and primitive alone. So the order of the search never shows.
+class NearestSearch {
+ public:
+  NearestSearch(const SceneView& scene, const float (&p)[3], double radius)
+      : scene_(scene),
+        p_{p[0], p[1], p[2]},
+        slack_(kDistanceError * static_cast<double>(farthest_coordinate(scene, p))),
+        best_(radius),
+        ball_(p, widened(radius)) {}
+
+  /// Begins with a primitive that may be near.
+  void look(std::uint32_t id) {
+    const Foot foot = foot_on(scene_.geometry, id, p_);
+    take(id, foot.distance, foot.at);
+  }
+
+  void search() {
+    int order[kMostGrids];
+    const int count = grids_by_distance(order);
+    for (int i = 0; i < count; ++i)
+      search(scene_.grids[order[i]]);
+    look_at_lists(scene_.outside, 0);
+    const std::uint32_t planes = scene_.geometry.ids.begin(PrimitiveKind::kPlane);
+    for (std::uint32_t i = 0; i < scene_.geometry.of<Plane>().count; ++i)
+      look(planes + i);
+  }
+
+  std::uint32_t id() const { return id_; }
+  ClosestPoint found() const {
+    const double (&at)[3] = id_ == kNoPrimitive ? p_ : at_;
+    ClosestPoint found;
+    found.point = {static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2])};
+    if (id_ != kNoPrimitive)
+      found.distance = static_cast<float>(best_);
+    found.id = id_;
+    return found;
+  }
+
+ private:
+  static float farthest_coordinate(const SceneView& scene, const float (&p)[3]) {
+    float most = 0;
+    for (int a = 0; a < 3; ++a)
+      most = max(max(most, magnitude(p[a])),
+                 max(magnitude(scene.box_lo[a]), magnitude(scene.box_hi[a])));
+    return most;
+  }
+  /// What true distances may be of primitives that doubles find within a radius.
+  double widened(double radius) const { return radius * (1 + kDistanceError) + slack_; }
+
+  /// Numbers of the grids, the nearest first.
+  int grids_by_distance(int (&order)[kMostGrids]) const {
+    double squared[kMostGrids];
+    int count = 0;
+    for (; count < scene_.grid_count; ++count) {
+      const double distance = squared_distance(scene_.grids[count]);
+      int at = count;
+      for (; at > 0 && squared[at - 1] > distance; --at) {
+        squared[at] = squared[at - 1];
+        order[at] = order[at - 1];
+      }
+      squared[at] = distance;
+      order[at] = count;
+    }
+    return count;
+  }
+  double squared_distance(const GridView& g) const {
+    double sum = 0;
+    for (int a = 0; a < 3; ++a) {
+      const double hi = g.lo[a] + g.n[a] * g.cell[a];
+      const double way = max(max(g.lo[a] - p_[a], p_[a] - hi), 0.);
+      sum += way * way;
+    }
+    return sum;
+  }
+
+  void search(const GridView& g) {
+    BoxStack stack;
+    float squared[kBlock];
+    const auto push = [&](int level, std::uint32_t row) {
+      const unsigned near = boxes_near(ball_, g.levels.rows[g.levels.first[level] + row], squared);
+      stack.push(near, squared, level - 1, row * kBlock);
+    };
+    if (g.levels.levels > 0)
+      push(g.levels.levels - 1, 0);
+    while (!stack.empty()) {
+      const BoxStack::Entry box = stack.pop();
+      if (box.squared > ball_.reach)
+        continue;
+      if (box.level >= 0)
+        push(box.level, box.index);
+      else
+        look_at_lists(g.lists, g.levels.cells[box.index]);
+    }
+  }
+
+  void look_at_lists(const CellLists& lists, std::size_t cell) {
+    if (const Triangle::CellList& list = lists.of<Triangle>(); list.first) {
+      if (list.boxes)
+        look_at_boxes(list, list.first[cell], list.first[cell + 1]);
+      else
+        for (std::uint32_t i = list.first[cell]; i < list.first[cell + 1]; ++i)
+          look_at_block(list.blocks[i]);
+    }
+    ArrayShapes::for_each([&]<class Shape>() {
+      const typename Shape::CellList& list = lists.of<Shape>();
+      if (list.first)
+        look_at_array<Shape>(list, list.first[cell], list.first[cell + 1]);
+    });
+  }
+
+  /// Blocks whose boxes stand at places first to end - 1.
+  void look_at_boxes(const Triangle::CellList& list, std::uint32_t first, std::uint32_t end) {
+    for (std::uint32_t row = first / kBlock; row * kBlock < end; ++row) {
+      const std::uint32_t begin = row * kBlock;
+      float squared[kBlock];
+      unsigned near = boxes_near(ball_, list.boxes[row], squared);
+      near &= first > begin ? ~0u << (first - begin) : ~0u;
+      near &= end - begin < kBlock ? (1u << (end - begin)) - 1 : ~0u;
+      while (near != 0) {
+        const int k = nearest_of(near, squared);
+        near &= ~(1u << k);
+        if (squared[k] <= ball_.reach)
+          look_at_block(list.blocks[list.first_block[row] + static_cast<std::uint32_t>(k)]);
+        else
+          break;
+      }
+    }
+  }
+  static int nearest_of(unsigned boxes, const float (&squared)[kBlock]) {
+    int nearest = __builtin_ctz(boxes);
+    each_bit(boxes & (boxes - 1), [&](int k) {
+      if (squared[k] < squared[nearest])
+        nearest = k;
+    });
+    return nearest;
+  }
+
+  void look_at_block(const TriangleBlock& block) {
+    unsigned near = 0;
+    for (int i = 0; i < kBlock; i += kWidth<Block>)
+      near |= triangles_near(ball_, block, i) << i;
+    constexpr unsigned kPart = (1u << kWidth<VDouble>) - 1;
+    for (int i = 0; i < kBlock; i += kWidth<VDouble>)
+      if (const unsigned lanes = near >> i & kPart; lanes != 0)
+        look_at_triangles(block, i, lanes);
+  }
+
+  /// Triangles i, i + 1, ... of a block, by bits, side by side in double.
+  void look_at_triangles(const TriangleBlock& block, int i, unsigned lanes) {
+    const auto corner = [i](const float (&c)[3][kBlock]) {
+      return Vec3<VDouble>{
+          grelha::GRELHA_ISA::take<VDouble>(c[0] + i),
+          grelha::GRELHA_ISA::take<VDouble>(c[1] + i),
+          grelha::GRELHA_ISA::take<VDouble>(c[2] + i)};
+    };
+    const Vec3<VDouble> p{VDouble(p_[0]), VDouble(p_[1]), VDouble(p_[2])};
+    const Vec3<VDouble> a = corner(block.a), b = corner(block.b), c = corner(block.c);
+    const Vec3<VDouble> n = cross(b - a, c - a);
+    const unsigned thin = bits(is_thin(b - a, c - a, n)) & lanes;
+    const Vec3<VDouble> at = nearest_on_triangle(p, a, b, c, n);
+    const VDouble distance = length(at - p);
+    const unsigned near = bits(distance <= VDouble(best_)) & lanes & ~thin;
+    double of[kWidth<VDouble>], x[kWidth<VDouble>], y[kWidth<VDouble>], z[kWidth<VDouble>];
+    store(of, distance);
+    store(x, at.x);
+    store(y, at.y);
+    store(z, at.z);
+    each_bit(near, [&](int k) { take(block.id[i + k], of[k], {x[k], y[k], z[k]}); });
+    each_bit(thin, [&](int k) { look(block.id[i + k]); });
+  }
+
+  template <class Shape>
+  void look_at_array(const typename Shape::CellList& list, std::uint32_t first, std::uint32_t end) {
+    for (std::uint32_t i = first; i < end; i += kWidth<Block>) {
+      unsigned near = primitives_near(ball_, list.fields, i);
+      near &= end - i < kWidth<Block> ? (1u << (end - i)) - 1 : (1u << kWidth<Block>) - 1;
+      each_bit(near, [&](int k) { look(list.id[i + static_cast<std::uint32_t>(k)]); });
+    }
+  }
+
+  void take(std::uint32_t id, double distance, const double (&at)[3]) {
+    if (!(distance < best_ || (distance == best_ && id < id_)))
+      return;
+    id_ = id;
+    for (int a = 0; a < 3; ++a)
+      at_[a] = at[a];
+    if (distance < best_) {
+      best_ = distance;
+      ball_.shrink(widened(distance));
+    }
+  }
+
+  const SceneView& scene_;
+  const double p_[3];
+  const double slack_;
+  double best_;
+  SearchBall ball_;
+  double at_[3] = {};
+  std::uint32_t id_ = kNoPrimitive;
+};
+
+inline bool is_finite(const float (&p)[3]) {
+  return p[0] - p[0] == 0 && p[1] - p[1] == 0 && p[2] - p[2] == 0;
+}
+
+/// Finds the closest points of many. `near` is the primitive that is closest to a neighbour of the
+/// first, or kNoPrimitive; the return value is that of the last.
+inline std::uint32_t closest_points(const SceneView& scene,
+                                    const Float3* points,
+                                    std::size_t count,
+                                    float radius,
+                                    std::uint32_t near,
+                                    ClosestPoint* found) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const float p[3] = {points[i].x, points[i].y, points[i].z};
+    found[i] = {points[i]};
+    if (!is_finite(p) || !(radius >= 0))
+      continue;
+    NearestSearch search(scene, p, static_cast<double>(radius));
+    if (near != kNoPrimitive)
+      search.look(near);
+    search.search();
+    found[i] = search.found();
+    near = search.id();
+  }
+  return near;
+}
+
+}  // namespace grelha::GRELHA_ISA
