@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 
 #include "kernel/grid/grid.hpp"
 #include "kernel/shapes/rounding.hpp"
@@ -29,43 +30,60 @@ struct FloatBox {
   }
 };
 
-/// Cells of a grid, first to last along each axis.
-struct CellRun {
-  std::uint32_t first[3], end[3];
-  std::uint32_t size(int a) const { return end[a] - first[a]; }
+/// A cell that holds something, and where it is.
+struct HeldCell {
+  std::uint32_t at[3];
+  std::uint32_t cell;
 };
 
-/// Lists the cells that hold something, neighbours near each other: halves the grid across its
-/// longest side, then each half.
+std::vector<HeldCell> held_cells(const Grid& g) {
+  std::vector<HeldCell> held;
+  held.reserve(g.occupied);
+  std::uint32_t cell = 0;
+  for (std::uint32_t z = 0; z < g.cells[2]; ++z)
+    for (std::uint32_t y = 0; y < g.cells[1]; ++y)
+      for (std::uint32_t x = 0; x < g.cells[0]; ++x, ++cell)
+        if (g.distance[cell] == 0)
+          held.push_back({{x, y, z}, cell});
+  return held;
+}
+
+/// Puts cells in the order of their boxes: splits them across their longest side into two parts of
+/// whole nodes, then each part.
 class CellOrder {
  public:
-  explicit CellOrder(const Grid& grid) : g_(grid) {
-    cells_.reserve(grid.occupied);
-    take({{0, 0, 0}, {g_.cells[0], g_.cells[1], g_.cells[2]}});
+  explicit CellOrder(const double (&cell)[3]) : cell_{cell[0], cell[1], cell[2]} {}
+
+  /// `node`: the most cells of a node of the level below, 8^k; recursion is as deep as the number
+  /// of cells has bits.
+  void sort(std::span<HeldCell> cells, std::size_t node) const {
+    while (node >= cells.size() && node > 1)
+      node /= kBlock;
+    if (cells.size() <= kBlock && node == 1)
+      return;
+    const int across = longest_side(cells);
+    const std::size_t nodes = (cells.size() + node - 1) / node;
+    const std::size_t middle = nodes / 2 * node;
+    const auto before = [across](const HeldCell& a, const HeldCell& b) {
+      return a.at[across] != b.at[across] ? a.at[across] < b.at[across] : a.cell < b.cell;
+    };
+    std::nth_element(cells.begin(), cells.begin() + static_cast<std::ptrdiff_t>(middle),
+                     cells.end(), before);
+    sort(cells.first(middle), node);
+    sort(cells.subspan(middle), node);
   }
-  std::vector<std::uint32_t> cells() && { return std::move(cells_); }
 
  private:
-  /// As deep as the numbers of cells have bits together.
-  void take(const CellRun& run) {
-    const std::size_t cell = run.first[0] + std::size_t{g_.cells[0]} *
-                                                (run.first[1] + std::size_t{g_.cells[1]} *
-                                                                    run.first[2]);
-    const std::uint32_t most = std::max({run.size(0), run.size(1), run.size(2)});
-    if (g_.distance[cell] >= most)
-      return;  // nothing is so near to this corner
-    if (most == 1)
-      return cells_.push_back(static_cast<std::uint32_t>(cell));
-    const int across = longest_side(run);
-    const std::uint32_t middle = run.first[across] + run.size(across) / 2;
-    CellRun below = run, above = run;
-    below.end[across] = above.first[across] = middle;
-    take(below);
-    take(above);
-  }
-
-  int longest_side(const CellRun& run) const {
-    const auto length = [&](int a) { return run.size(a) > 1 ? run.size(a) * g_.cell[a] : 0.; };
+  int longest_side(std::span<const HeldCell> cells) const {
+    std::uint32_t lo[3], hi[3];
+    std::copy_n(cells[0].at, 3, lo);
+    std::copy_n(cells[0].at, 3, hi);
+    for (const HeldCell& c : cells)
+      for (int a = 0; a < 3; ++a) {
+        lo[a] = std::min(lo[a], c.at[a]);
+        hi[a] = std::max(hi[a], c.at[a]);
+      }
+    const auto length = [&](int a) { return (hi[a] - lo[a]) * cell_[a]; };
     int longest = 0;
     for (int a = 1; a < 3; ++a)
       if (length(a) > length(longest))
@@ -73,9 +91,20 @@ class CellOrder {
     return longest;
   }
 
-  const Grid& g_;
-  std::vector<std::uint32_t> cells_;
+  const double cell_[3];
 };
+
+std::vector<std::uint32_t> ordered_cells(const Grid& g) {
+  std::vector<HeldCell> held = held_cells(g);
+  std::size_t node = 1;
+  while (node < held.size())
+    node *= kBlock;
+  CellOrder(g.cell).sort(held, node);
+  std::vector<std::uint32_t> cells(held.size());
+  std::transform(
+      held.begin(), held.end(), cells.begin(), [](const HeldCell& c) { return c.cell; });
+  return cells;
+}
 
 bool holds_others(const CellStore& store, std::size_t cell) {
   bool any = false;
@@ -144,7 +173,7 @@ std::size_t box_level_bytes(std::size_t cells) {
 
 BoxLevels build_box_levels(const Grid& g) {
   BoxLevels levels;
-  levels.cells = CellOrder(g).cells();
+  levels.cells = ordered_cells(g);
   std::vector<std::uint32_t>& first = levels.first = level_starts(levels.cells.size());
   levels.rows.resize(first.back());
   first.pop_back();

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <iterator>
 #include <limits>
 
 #include "grelha/all_hits.hpp"
@@ -7,11 +9,17 @@
 #include "kernel/query/variants.hpp"
 
 namespace grelha {
+namespace {
+
+float signed_by(bool inside, float distance) {
+  return inside ? 0 - distance : distance;  // no zero is -0
+}
+
+}  // namespace
 
 ClosestPoint closest_point(const World& world, Float3 point, float radius) {
   ClosestPoint found;
-  best_variant().loops.closest_points(
-      world.impl().view, &point, 1, radius, kNoPrimitive, &found);
+  best_variant().loops.closest_points(world.impl().view, &point, 1, radius, &found);
   return found;
 }
 
@@ -23,14 +31,13 @@ void closest_points(const World& world,
   expect_same_size(points.size(), found.size(), "points");
   const ClosestPointsLoop loop = choose_variant(options.isa).loops.closest_points;
   const auto work = [&](std::size_t first, std::size_t end) {
-    loop(world.impl().view, &points[first], end - first, radius, kNoPrimitive, &found[first]);
+    loop(world.impl().view, &points[first], end - first, radius, &found[first]);
   };
   each_run(points.size(), options, work, kPoints);
 }
 
 float signed_distance(const World& world, Float3 point) {
-  const float distance = closest_point(world, point).distance;
-  return contains(world, point) ? 0 - distance : distance;  // no zero is -0
+  return signed_by(contains(world, point), closest_point(world, point).distance);
 }
 
 void signed_distances(const World& world,
@@ -40,16 +47,12 @@ void signed_distances(const World& world,
   expect_same_size(points.size(), distances.size(), "points");
   const ClosestPointsLoop loop = choose_variant(options.isa).loops.closest_points;
   const auto work = [&](std::size_t first, std::size_t end) {
-    ClosestPoint found;
-    std::uint32_t near = kNoPrimitive;
-    for (std::size_t i = first; i < end; ++i) {
-      near = loop(world.impl().view,
-                  &points[i],
-                  1,
-                  std::numeric_limits<float>::infinity(),
-                  near,
-                  &found);
-      distances[i] = contains(world, points[i]) ? 0 - found.distance : found.distance;
+    ClosestPoint found[kPoints.most];
+    for (std::size_t i = first; i < end; i += std::size(found)) {
+      const std::size_t count = std::min(std::size(found), end - i);
+      loop(world.impl().view, &points[i], count, std::numeric_limits<float>::infinity(), found);
+      for (std::size_t k = 0; k < count; ++k)
+        distances[i + k] = signed_by(contains(world, points[i + k]), found[k].distance);
     }
   };
   each_run(points.size(), options, work, kPoints);

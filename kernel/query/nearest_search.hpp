@@ -13,26 +13,39 @@ namespace grelha::GRELHA_ISA {
 /// Times distance: error of what doubles say of it, and of coordinates (docs/numerics.md).
 inline constexpr double kDistanceError = 0x1p-44;
 
-/// Boxes that wait to be looked into, each nearer than those below it of its node.
+/// Of some boxes of a row, by bits, the one that is nearest.
+[[gnu::always_inline]] inline int nearest_of(unsigned boxes, const float (&beside)[kBlock]) {
+  int nearest = __builtin_ctz(boxes);
+  float least = beside[nearest];
+  each_bit(boxes & (boxes - 1), [&](int k) {
+    const bool is_less = beside[k] < least;
+    least = is_less ? beside[k] : least;
+    nearest = is_less ? k : nearest;
+  });
+  return nearest;
+}
+
+/// Boxes that wait to be looked into.
 class BoxStack {
  public:
   struct Entry {
-    float squared;  ///< distance
-    int level;      ///< of the row that the box stands for; -1: a cell
+    float beside;  ///< see SearchBall
+    int level;     ///< of the row that the box stands for; -1: a cell
     std::uint32_t index;
   };
 
   bool empty() const { return size_ == 0; }
   Entry pop() { return entry_[--size_]; }
-  /// Boxes k of a row, `first` + k on the level below, by bits.
-  void push(unsigned boxes, const float (&squared)[kBlock], int level, std::uint32_t first) {
-    const int bottom = size_;
-    each_bit(boxes, [&](int k) {
-      int at = size_++;
-      for (; at > bottom && entry_[at - 1].squared < squared[k]; --at)
-        entry_[at] = entry_[at - 1];
-      entry_[at] = {squared[k], level, first + static_cast<std::uint32_t>(k)};
-    });
+  /// Boxes k of a row, `first` + k on the level below, by bits; the nearest is the next.
+  void push(unsigned boxes, const float (&beside)[kBlock], int level, std::uint32_t first) {
+    if (boxes == 0)
+      return;
+    const auto put = [&](int k) {
+      entry_[size_++] = {beside[k], level, first + static_cast<std::uint32_t>(k)};
+    };
+    const int nearest = nearest_of(boxes, beside);
+    each_bit(boxes & ~(1u << nearest), put);
+    put(nearest);
   }
 
  private:
@@ -50,12 +63,14 @@ class NearestSearch {
         p_{p[0], p[1], p[2]},
         slack_(kDistanceError * static_cast<double>(farthest_coordinate(scene, p))),
         best_(radius),
-        ball_(p, widened(radius)) {}
+        ball_(p, scene.box_lo, scene.box_hi) {
+    ball_.shrink(widened(radius));
+  }
 
-  /// Begins with a primitive that may be near.
-  void look(std::uint32_t id) {
-    const Foot foot = foot_on(scene_.geometry, id, p_);
-    take(id, foot.distance, foot.at);
+  /// Something is no further away than a point of a surface.
+  void expect(const double (&point)[3]) {
+    const Point way{point[0] - p_[0], point[1] - p_[1], point[2] - p_[2]};
+    narrow(length(way));
   }
 
   void search() {
@@ -67,8 +82,10 @@ class NearestSearch {
     const std::uint32_t planes = scene_.geometry.ids.begin(PrimitiveKind::kPlane);
     for (std::uint32_t i = 0; i < scene_.geometry.of<Plane>().count; ++i)
       look(planes + i);
+    look_at_pending();
   }
 
+  const double (&at() const)[3] { return at_; }
   std::uint32_t id() const { return id_; }
   ClosestPoint found() const {
     const double (&at)[3] = id_ == kNoPrimitive ? p_ : at_;
@@ -81,6 +98,14 @@ class NearestSearch {
   }
 
  private:
+  /// Triangles that await doubles.
+  struct Pending {
+    const TriangleBlock* block;
+    float lower[kBlock];  ///< bounds of their distances
+  };
+  static constexpr int kMostPending = 16;
+  static constexpr float kInf = __builtin_inff();
+
   static float farthest_coordinate(const SceneView& scene, const float (&p)[3]) {
     float most = 0;
     for (int a = 0; a < 3; ++a)
@@ -119,16 +144,16 @@ class NearestSearch {
 
   void search(const GridView& g) {
     BoxStack stack;
-    float squared[kBlock];
+    float beside[kBlock];
     const auto push = [&](int level, std::uint32_t row) {
-      const unsigned near = boxes_near(ball_, g.levels.rows[g.levels.first[level] + row], squared);
-      stack.push(near, squared, level - 1, row * kBlock);
+      const unsigned near = boxes_near(ball_, g.levels.rows[g.levels.first[level] + row], beside);
+      stack.push(near, beside, level - 1, row * kBlock);
     };
     if (g.levels.levels > 0)
       push(g.levels.levels - 1, 0);
     while (!stack.empty()) {
       const BoxStack::Entry box = stack.pop();
-      if (box.squared > ball_.reach)
+      if (box.beside > ball_.reach)
         continue;
       if (box.level >= 0)
         push(box.level, box.index);
@@ -156,37 +181,56 @@ class NearestSearch {
   void look_at_boxes(const Triangle::CellList& list, std::uint32_t first, std::uint32_t end) {
     for (std::uint32_t row = first / kBlock; row * kBlock < end; ++row) {
       const std::uint32_t begin = row * kBlock;
-      float squared[kBlock];
-      unsigned near = boxes_near(ball_, list.boxes[row], squared);
+      float beside[kBlock];
+      unsigned near = boxes_near(ball_, list.boxes[row], beside);
       near &= first > begin ? ~0u << (first - begin) : ~0u;
       near &= end - begin < kBlock ? (1u << (end - begin)) - 1 : ~0u;
       while (near != 0) {
-        const int k = nearest_of(near, squared);
+        const int k = nearest_of(near, beside);
         near &= ~(1u << k);
-        if (squared[k] <= ball_.reach)
-          look_at_block(list.blocks[list.first_block[row] + static_cast<std::uint32_t>(k)]);
-        else
+        if (beside[k] > ball_.reach)
           break;
+        look_at_block(list.blocks[list.first_block[row] + static_cast<std::uint32_t>(k)]);
       }
     }
   }
-  static int nearest_of(unsigned boxes, const float (&squared)[kBlock]) {
-    int nearest = __builtin_ctz(boxes);
-    each_bit(boxes & (boxes - 1), [&](int k) {
-      if (squared[k] < squared[nearest])
-        nearest = k;
-    });
-    return nearest;
-  }
 
+  /// Floats bound its distances at once; doubles wait until more is known.
   void look_at_block(const TriangleBlock& block) {
-    unsigned near = 0;
+    Pending& next = pending_[pending_count_];
+    float upper = kInf;
+    for (int i = 0; i < kBlock; i += kWidth<Block>) {
+      const TriangleBounds bounds = ball_.is_far() ? triangle_bounds_from_afar(ball_, block, i)
+                                                   : triangle_bounds(ball_.center, block, i);
+      const Block none(kInf);
+      store(next.lower + i, bounds.lower);
+      upper = min(upper, lane_min(select(bounds.upper == bounds.upper, bounds.upper, none)));
+    }
+    if (upper < limit())
+      narrow(ball_.is_far() ? ball_.distance_of(upper) : static_cast<double>(upper));
+    next.block = &block;
+    pending_count_ += lanes_near(next) != 0;
+    if (pending_count_ == kMostPending)
+      look_at_pending();
+  }
+  /// What lower bounds of triangles that matter are not above.
+  float limit() const { return ball_.is_far() ? ball_.reach : ball_.radius; }
+  /// Bits of the triangles that may be nearest.
+  unsigned lanes_near(const Pending& of) const {
+    unsigned beyond = 0;
     for (int i = 0; i < kBlock; i += kWidth<Block>)
-      near |= triangles_near(ball_, block, i) << i;
+      beyond |= bits(load<Block>(of.lower + i) > Block(limit())) << i;
+    return ~beyond & ((1u << kBlock) - 1);
+  }
+  void look_at_pending() {
     constexpr unsigned kPart = (1u << kWidth<VDouble>) - 1;
-    for (int i = 0; i < kBlock; i += kWidth<VDouble>)
-      if (const unsigned lanes = near >> i & kPart; lanes != 0)
-        look_at_triangles(block, i, lanes);
+    for (int one = 0; one < pending_count_; ++one) {
+      const unsigned near = lanes_near(pending_[one]);
+      for (int i = 0; i < kBlock; i += kWidth<VDouble>)
+        if (const unsigned lanes = near >> i & kPart; lanes != 0)
+          look_at_triangles(*pending_[one].block, i, lanes);
+    }
+    pending_count_ = 0;
   }
 
   /// Triangles i, i + 1, ... of a block, by bits, side by side in double.
@@ -222,16 +266,25 @@ class NearestSearch {
     }
   }
 
+  void look(std::uint32_t id) {
+    const Foot foot = foot_on(scene_.geometry, id, p_);
+    take(id, foot.distance, foot.at);
+  }
+
   void take(std::uint32_t id, double distance, const double (&at)[3]) {
     if (!(distance < best_ || (distance == best_ && id < id_)))
       return;
     id_ = id;
     for (int a = 0; a < 3; ++a)
       at_[a] = at[a];
-    if (distance < best_) {
-      best_ = distance;
-      ball_.shrink(widened(distance));
-    }
+    best_ = distance;
+    narrow(distance);
+  }
+  /// Something is surely this near.
+  void narrow(double distance) {
+    const double radius = widened(distance);
+    if (radius < static_cast<double>(ball_.radius))
+      ball_.shrink(radius);
   }
 
   const SceneView& scene_;
@@ -241,33 +294,36 @@ class NearestSearch {
   SearchBall ball_;
   double at_[3] = {};
   std::uint32_t id_ = kNoPrimitive;
+  int pending_count_ = 0;
+  Pending pending_[kMostPending];
 };
 
 inline bool is_finite(const float (&p)[3]) {
   return p[0] - p[0] == 0 && p[1] - p[1] == 0 && p[2] - p[2] == 0;
 }
 
-/// Finds the closest points of many. `near` is the primitive that is closest to a neighbour of the
-/// first, or kNoPrimitive; the return value is that of the last.
-inline std::uint32_t closest_points(const SceneView& scene,
-                                    const Float3* points,
-                                    std::size_t count,
-                                    float radius,
-                                    std::uint32_t near,
-                                    ClosestPoint* found) {
+/// Finds the closest points of many, of which neighbours are near each other.
+inline void closest_points(const SceneView& scene,
+                           const Float3* points,
+                           std::size_t count,
+                           float radius,
+                           ClosestPoint* found) {
+  bool any = false;
+  double last[3];
   for (std::size_t i = 0; i < count; ++i) {
     const float p[3] = {points[i].x, points[i].y, points[i].z};
     found[i] = {points[i]};
     if (!is_finite(p) || !(radius >= 0))
       continue;
     NearestSearch search(scene, p, static_cast<double>(radius));
-    if (near != kNoPrimitive)
-      search.look(near);
+    if (any)
+      search.expect(last);
     search.search();
     found[i] = search.found();
-    near = search.id();
+    any = search.id() != kNoPrimitive;
+    for (int a = 0; a < 3; ++a)
+      last[a] = search.at()[a];
   }
-  return near;
 }
 
 }  // namespace grelha::GRELHA_ISA

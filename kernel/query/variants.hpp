@@ -21,14 +21,9 @@ using ClosestLoop =
 using OccludedLoop =
     void (*)(const SceneView&, const Rays&, std::uint8_t*, const TraceOptions&, TraceCounts&);
 
-/// Finds the closest points of [count] points. `near`: what is closest to a neighbour of the first,
-/// or kNoPrimitive; returns what is closest to the last.
-using ClosestPointsLoop = std::uint32_t (*)(const SceneView&,
-                                            const Float3*,
-                                            std::size_t count,
-                                            float radius,
-                                            std::uint32_t near,
-                                            ClosestPoint*);
+/// Finds the closest points of [count] points.
+using ClosestPointsLoop =
+    void (*)(const SceneView&, const Float3*, std::size_t count, float radius, ClosestPoint*);
 
 /// The functions of one instruction set.
 struct VariantLoops {
