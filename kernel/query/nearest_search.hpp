@@ -82,7 +82,6 @@ class NearestSearch {
     const std::uint32_t planes = scene_.geometry.ids.begin(PrimitiveKind::kPlane);
     for (std::uint32_t i = 0; i < scene_.geometry.of<Plane>().count; ++i)
       look(planes + i);
-    look_at_pending();
   }
 
   const double (&at() const)[3] { return at_; }
@@ -98,14 +97,6 @@ class NearestSearch {
   }
 
  private:
-  /// Triangles that await doubles.
-  struct Pending {
-    const TriangleBlock* block;
-    float lower[kBlock];  ///< bounds of their distances
-  };
-  static constexpr int kMostPending = 16;
-  static constexpr float kInf = __builtin_inff();
-
   static float farthest_coordinate(const SceneView& scene, const float (&p)[3]) {
     float most = 0;
     for (int a = 0; a < 3; ++a)
@@ -195,42 +186,12 @@ class NearestSearch {
     }
   }
 
-  /// Floats bound its distances at once; doubles wait until more is known.
   void look_at_block(const TriangleBlock& block) {
-    Pending& next = pending_[pending_count_];
-    float upper = kInf;
-    for (int i = 0; i < kBlock; i += kWidth<Block>) {
-      const TriangleBounds bounds = ball_.is_far() ? triangle_bounds_from_afar(ball_, block, i)
-                                                   : triangle_bounds(ball_.center, block, i);
-      const Block none(kInf);
-      store(next.lower + i, bounds.lower);
-      upper = min(upper, lane_min(select(bounds.upper == bounds.upper, bounds.upper, none)));
-    }
-    if (upper < limit())
-      narrow(ball_.is_far() ? ball_.distance_of(upper) : static_cast<double>(upper));
-    next.block = &block;
-    pending_count_ += lanes_near(next) != 0;
-    if (pending_count_ == kMostPending)
-      look_at_pending();
-  }
-  /// What lower bounds of triangles that matter are not above.
-  float limit() const { return ball_.is_far() ? ball_.reach : ball_.radius; }
-  /// Bits of the triangles that may be nearest.
-  unsigned lanes_near(const Pending& of) const {
-    unsigned beyond = 0;
-    for (int i = 0; i < kBlock; i += kWidth<Block>)
-      beyond |= bits(load<Block>(of.lower + i) > Block(limit())) << i;
-    return ~beyond & ((1u << kBlock) - 1);
-  }
-  void look_at_pending() {
+    const unsigned near = triangles_near(ball_, block);
     constexpr unsigned kPart = (1u << kWidth<VDouble>) - 1;
-    for (int one = 0; one < pending_count_; ++one) {
-      const unsigned near = lanes_near(pending_[one]);
-      for (int i = 0; i < kBlock; i += kWidth<VDouble>)
-        if (const unsigned lanes = near >> i & kPart; lanes != 0)
-          look_at_triangles(*pending_[one].block, i, lanes);
-    }
-    pending_count_ = 0;
+    for (int i = 0; i < kBlock; i += kWidth<VDouble>)
+      if (const unsigned lanes = near >> i & kPart; lanes != 0)
+        look_at_triangles(block, i, lanes);
   }
 
   /// Triangles i, i + 1, ... of a block, by bits, side by side in double.
@@ -248,13 +209,18 @@ class NearestSearch {
     const Vec3<VDouble> at = nearest_on_triangle(p, a, b, c, n);
     const VDouble distance = length(at - p);
     const unsigned near = bits(distance <= VDouble(best_)) & lanes & ~thin;
+    each_bit(thin, [&](int k) { look(block.id[i + k]); });
+    if (near == 0)
+      return;
     double of[kWidth<VDouble>], x[kWidth<VDouble>], y[kWidth<VDouble>], z[kWidth<VDouble>];
     store(of, distance);
     store(x, at.x);
     store(y, at.y);
     store(z, at.z);
-    each_bit(near, [&](int k) { take(block.id[i + k], of[k], {x[k], y[k], z[k]}); });
-    each_bit(thin, [&](int k) { look(block.id[i + k]); });
+    double least = of[__builtin_ctz(near)];
+    each_bit(near, [&](int k) { least = min(of[k], least); });
+    each_bit(near & bits(distance == VDouble(least)),
+             [&](int k) { take(block.id[i + k], of[k], {x[k], y[k], z[k]}); });
   }
 
   template <class Shape>
@@ -294,8 +260,6 @@ class NearestSearch {
   SearchBall ball_;
   double at_[3] = {};
   std::uint32_t id_ = kNoPrimitive;
-  int pending_count_ = 0;
-  Pending pending_[kMostPending];
 };
 
 inline bool is_finite(const float (&p)[3]) {
@@ -309,7 +273,7 @@ inline void closest_points(const SceneView& scene,
                            float radius,
                            ClosestPoint* found) {
   bool any = false;
-  double last[3];
+  double last[3] = {};
   for (std::size_t i = 0; i < count; ++i) {
     const float p[3] = {points[i].x, points[i].y, points[i].z};
     found[i] = {points[i]};

@@ -16,8 +16,6 @@ inline constexpr float kAlongError = 8 * kEps;
 inline constexpr float kLengthError = 8 * kEps;
 /// Times the size of what is seen from afar: error of SearchBall::beside(), 50 u.
 inline constexpr float kBesideLost = 64 * kEps;
-/// Times the farthest of three points: error of one between them, 12 u.
-inline constexpr float kFootError = 32 * kEps;
 /// Times a cone and the way to it: error of where a point lies beside its axis, 15 u.
 inline constexpr float kBesideError = 32 * kEps;
 /// More than what underflows in a product, and in a length.
@@ -56,8 +54,8 @@ class SearchBall {
   }
   void shrink(double r) {
     const double beside = (r - away_) * (r + away_) * unit_;
-    reach = round_up(beside + 8 * double{kEps} * magnitude(beside) + lost_);
-    radius = round_up(r);
+    reach = static_cast<float>(beside + 16 * double{kEps} * magnitude(beside) + lost_);
+    radius = static_cast<float>(r * (1 + 4 * double{kEps}) + double{kLostLength});
   }
   bool is_far() const { return away_ > 0; }
   /// Of points x: a number that grows with the distance.
@@ -68,10 +66,6 @@ class SearchBall {
   /// How fast beside() shrinks along each axis.
   [[gnu::always_inline]] Vec3<Block> slope(const Vec3<Block>& x) const {
     return twice_ + Block(static_cast<float>(2 * unit_)) * (from_ - x);
-  }
-  /// No less than the distance of a point that lies so much beside, as floats tell.
-  double distance_of(float beside) const {
-    return square_root(away_ * away_ + (static_cast<double>(beside) + lost_) * away_);
   }
 
  private:
@@ -129,69 +123,57 @@ struct ReachAlong {
   return a + min(max(share, Block(0)), Block(1)) * along;
 }
 
-/// Bounds of the distances of triangles side by side.
-struct TriangleBounds {
-  Block lower;  ///< 0 or less: nothing is known
-  Block upper;
+/// Triangles i, i + 1, ... of a block.
+struct BlockCorners {
+  Vec3<Block> a, b, c;
+
+  [[gnu::always_inline]] BlockCorners(const TriangleBlock& block, int i)
+      : a(at(block.a, i)), b(at(block.b, i)), c(at(block.c, i)) {}
+
+ private:
+  [[gnu::always_inline]] static Vec3<Block> at(const float (&corner)[3][kBlock], int i) {
+    return {load<Block>(corner[0] + i), load<Block>(corner[1] + i), load<Block>(corner[2] + i)};
+  }
 };
 
-/// Of triangles i, i + 1, ... of a block. The point of a triangle that is about nearest bounds the
-/// distance from above. From below, it is bounded by the plane through that point and across the
-/// way to it: all corners lie behind.
-[[gnu::always_inline]] inline TriangleBounds triangle_bounds(const Vec3<Block>& p,
-                                                             const TriangleBlock& block,
-                                                             int i) {
-  const auto corner_of = [&](const float (&corner)[3][kBlock]) {
-    return Vec3<Block>{load<Block>(corner[0] + i),
-                       load<Block>(corner[1] + i),
-                       load<Block>(corner[2] + i)} -
-           p;
+/// Where the boxes of triangles are surely beyond a ball, or all their corners beyond a plane that
+/// touches it.
+[[gnu::always_inline]] inline Mask<Block> are_beyond(const SearchBall& ball,
+                                                     const BlockCorners& t) {
+  const auto nearest = [](const Block& x, const Block& a, const Block& b, const Block& c) {
+    return min(max(x, min(min(a, b), c)), max(max(a, b), c));
   };
-  const Vec3<Block> corner[3] = {corner_of(block.a), corner_of(block.b), corner_of(block.c)};
-  const auto& [a, b, c] = corner;
-  const Vec3<Block> n = cross(b - a, c - a);
-  const Block nn = dot(n, n);
-  const Block of_a = dot(cross(b, c), n);
-  const Block of_b = dot(cross(c, a), n);
-  const Block of_c = (nn - of_a) - of_b;
-  const Block share = Block(1) / ((of_a + of_b) + of_c);
-  const Vec3<Block> foot = share * (of_a * a + of_b * b + of_c * c);
-  Vec3<Block> way = near_on_segment(a, b);
-  Block squared = dot(way, way);
-  const auto compare = [&](const Vec3<Block>& other) {
-    const Block of_other = dot(other, other);
-    const auto is_less = of_other < squared;
-    way = select(is_less, other, way);
-    squared = select(is_less, of_other, squared);
-  };
-  compare(near_on_segment(b, c));
-  compare(near_on_segment(c, a));
-  const Block of_foot = dot(foot, foot);
-  const auto is_foot =
-      mask_and(min(min(of_a, of_b), of_c) >= Block(0), of_foot <= squared);
-  const Block least = select(is_foot, of_foot, squared);
-  way = select(is_foot, n, way);
-  squared = select(is_foot, nn, squared);
-  const Block farthest = max(max(largest(a), largest(b)), largest(c));
-  const Block known(1 + kLengthError), lost(kLostLength);
-  return {ReachAlong(way, corner, farthest).surely_beside() / (square_root(squared) * known + lost),
-          square_root(least) * known + (Block(kFootError) * farthest + lost)};
+  const Vec3<Block>& p = ball.center;
+  const Block beside = ball.beside({nearest(p.x, t.a.x, t.b.x, t.c.x),
+                                    nearest(p.y, t.a.y, t.b.y, t.c.y),
+                                    nearest(p.z, t.a.z, t.b.z, t.c.z)});
+  const Vec3<Block> corner[3] = {t.a - p, t.b - p, t.c - p};
+  const Vec3<Block> n = cross(corner[1] - corner[0], corner[2] - corner[0]);
+  const Block farthest = max(max(largest(corner[0]), largest(corner[1])), largest(corner[2]));
+  const Block length = square_root(dot(n, n)) * Block(1 + kLengthError) + Block(kLostLength);
+  const Block above = ReachAlong(n, corner, farthest).surely_beside();
+  return mask_or(beside > Block(ball.reach), above > Block(ball.radius) * length);
 }
 
-/// The same from afar, of SearchBall::beside(), which is convex: one corner bounds it from above,
-/// and the plane that touches it there from below.
-[[gnu::always_inline]] inline TriangleBounds triangle_bounds_from_afar(const SearchBall& ball,
-                                                                       const TriangleBlock& block,
-                                                                       int i) {
-  const auto corner_of = [&](const float (&corner)[3][kBlock]) {
-    return Vec3<Block>{
-        load<Block>(corner[0] + i), load<Block>(corner[1] + i), load<Block>(corner[2] + i)};
-  };
-  const Vec3<Block> a = corner_of(block.a), b = corner_of(block.b), c = corner_of(block.c);
-  const Block of_a = ball.beside(a);
-  const Vec3<Block> slope = ball.slope(a);
-  const Block most = max(max(dot(slope, b - a), dot(slope, c - a)), Block(0));
-  return {of_a - most, min(of_a, min(ball.beside(b), ball.beside(c)))};
+/// The same from afar, of SearchBall::beside(): it is convex, so the plane that touches it at one
+/// corner bounds it.
+[[gnu::always_inline]] inline Mask<Block> are_beyond_afar(const SearchBall& ball,
+                                                          const BlockCorners& t) {
+  const Vec3<Block> slope = ball.slope(t.a);
+  const Block most = max(max(dot(slope, t.b - t.a), dot(slope, t.c - t.a)), Block(0));
+  return ball.beside(t.a) - most > Block(ball.reach);
+}
+
+/// Bits of the triangles of a block that may reach into a ball.
+[[gnu::always_inline]] inline unsigned triangles_near(const SearchBall& ball,
+                                                      const TriangleBlock& block) {
+  unsigned near = 0;
+  for (int i = 0; i < kBlock; i += kWidth<Block>) {
+    const BlockCorners t(block, i);
+    const Mask<Block> beyond = ball.is_far() ? are_beyond_afar(ball, t) : are_beyond(ball, t);
+    near |= bits(and_not(t.a.x == t.a.x, beyond)) << i;
+  }
+  return near;
 }
 
 /// Bits of the spheres i, i + 1, ... that may reach into a ball.
