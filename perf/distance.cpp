@@ -35,8 +35,8 @@ namespace {
 using namespace grelha;
 using namespace grelha::perf;
 
-constexpr double kFewerInMiddle = 64;   ///< times fewer points there: each takes long
-constexpr double kAllowed = 1e-5;       ///< difference of distances, of these and of coordinates
+constexpr double kFewerInMiddle = 64;  ///< times fewer points there: each takes long
+constexpr double kAllowed = 1e-5;      ///< difference of distances, of these and of coordinates
 constexpr const char* kNames[] = {"array", "call", "Embree", "CGAL"};
 
 struct Options {
@@ -166,7 +166,10 @@ std::vector<std::unique_ptr<Method>> methods_of(const World& world,
 }
 
 /// Grelha's two ways agree to the bit, others about.
-bool is_same(const PointSet& set, const std::vector<ClosestPoint>& truth, const Method& m, bool own) {
+bool is_same(const PointSet& set,
+             const std::vector<ClosestPoint>& truth,
+             const Method& m,
+             bool own) {
   for (std::size_t i = 0; i < truth.size(); ++i) {
     const Float3 p = set.points[i];
     const double scale = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z), truth[i].distance});
@@ -174,7 +177,10 @@ bool is_same(const PointSet& set, const std::vector<ClosestPoint>& truth, const 
     const bool same_bits = m.found[i].id == truth[i].id && m.found[i].point == truth[i].point;
     if (own ? !same_bits || off != 0 : !(off <= kAllowed * scale)) {
       std::printf("%s: point %zu: %.9g and %.9g\n",
-                  set.name.c_str(), i, double{truth[i].distance}, double{m.found[i].distance});
+                  set.name.c_str(),
+                  i,
+                  double{truth[i].distance},
+                  double{m.found[i].distance});
       return false;
     }
   }

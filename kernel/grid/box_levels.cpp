@@ -67,8 +67,8 @@ class CellOrder {
     const auto before = [across](const HeldCell& a, const HeldCell& b) {
       return a.at[across] != b.at[across] ? a.at[across] < b.at[across] : a.cell < b.cell;
     };
-    std::nth_element(cells.begin(), cells.begin() + static_cast<std::ptrdiff_t>(middle),
-                     cells.end(), before);
+    std::nth_element(
+        cells.begin(), cells.begin() + static_cast<std::ptrdiff_t>(middle), cells.end(), before);
     sort(cells.first(middle), node);
     sort(cells.subspan(middle), node);
   }
@@ -101,8 +101,7 @@ std::vector<std::uint32_t> ordered_cells(const Grid& g) {
     node *= kBlock;
   CellOrder(g.cell).sort(held, node);
   std::vector<std::uint32_t> cells(held.size());
-  std::transform(
-      held.begin(), held.end(), cells.begin(), [](const HeldCell& c) { return c.cell; });
+  std::transform(held.begin(), held.end(), cells.begin(), [](const HeldCell& c) { return c.cell; });
   return cells;
 }
 

@@ -24,7 +24,7 @@ struct Grid {
   bool stretched = false;  ///< rays walk it one by one: slices of few long cells part no packet
   CellStore store;
   std::vector<std::uint8_t> distance;  ///< of cells, see distance_field.hpp
-  BoxLevels levels;  ///< of the cells that hold something
+  BoxLevels levels;                    ///< of the cells that hold something
   std::uint64_t occupied = 0;
   double near_distance =
       0;  ///< how far from their box rays start that walk it from where they start

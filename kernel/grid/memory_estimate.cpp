@@ -28,6 +28,7 @@ constexpr auto kTriangles = kNumber<Triangle>;
 struct Lists {
   std::array<double, kKinds> references{};
   double blocks = 0;
+  double cells = 0;  ///< that hold something
   double all() const {
     double sum = 0;
     for (const double n : references)
@@ -60,8 +61,15 @@ std::vector<std::uint32_t> pick(const std::vector<std::uint32_t>& ids) {
   return picked;
 }
 
-/// Blocks that hold references of triangles, where picked ones, `share` of all, stand in `cells`.
-double blocks_of(double references, std::vector<std::size_t> cells, double share) {
+/// Cells that hold references, and what blocks of eight each takes if they are triangles.
+struct HeldCells {
+  double cells, blocks;
+};
+
+/// Where picked references, `share` of all, stand in `cells`.
+HeldCells held_cells(double references, std::vector<std::size_t> cells, double share) {
+  if (cells.empty())
+    return {};
   std::sort(cells.begin(), cells.end());
   double pairs = 0;
   for (auto from = cells.begin(), to = from; from != cells.end(); from = to) {
@@ -72,26 +80,29 @@ double blocks_of(double references, std::vector<std::size_t> cells, double share
   // sum. Cells of a surface hold from nothing to twice the mean, so there are half as many again as
   // if all held as much. The last block of each is half empty, or an eighth full.
   const double held = 1 + pairs / (share * static_cast<double>(cells.size()));
-  return references / kBlock + references * 1.5 / (held + .5) * (1 + 1 / held) * 7 / 16;
+  const double count = references * 1.5 / (held + .5);
+  return {count, references / kBlock + count * (1 + 1 / held) * 7 / 16};
 }
 
 Lists expected(const Primitives& p, const std::vector<std::uint32_t>& ids, const Grid& g) {
   const std::vector<std::uint32_t> picked = pick(ids);
   const CellFinder finder(p, g);
   Lists lists;
-  std::vector<std::size_t> cells;  // of triangles
+  std::vector<std::size_t> of_all, of_triangles;  // cells
   for (const std::uint32_t id : picked)
     finder(id, [&](std::size_t cell) {
       const PrimitiveKind kind = p.kind_of(id);
       ++lists.references[static_cast<std::size_t>(kind)];
+      of_all.push_back(cell);
       if (kind == PrimitiveKind::kTriangle)
-        cells.push_back(cell);
+        of_triangles.push_back(cell);
     });
   const double share = static_cast<double>(picked.size()) / static_cast<double>(ids.size());
   for (double& n : lists.references)
     n /= share;
-  if (!cells.empty())
-    lists.blocks = blocks_of(lists.references[kTriangles], std::move(cells), share);
+  lists.blocks = held_cells(lists.references[kTriangles], std::move(of_triangles), share).blocks;
+  lists.cells = std::min(held_cells(lists.all(), std::move(of_all), share).cells,
+                         static_cast<double>(cell_count(g.cells)));
   return lists;
 }
 
@@ -146,7 +157,8 @@ struct Memory {
   /// A grid of so many cells.
   void add(const Lists& lists, double cells) {
     const double distances = fields_of(cells) * cells;
-    double own = distances + lists.bytes(kBoxed) + unused_bytes(lists.blocks);
+    double own = distances + lists.bytes(kBoxed) + unused_bytes(lists.blocks) +
+                 static_cast<double>(box_level_bytes(static_cast<std::size_t>(lists.cells)));
     for (const double n : lists.references)
       own += n > 0 ? kId * cells : 0;
     // the pairs, then two fields besides where there is one

@@ -87,7 +87,7 @@ class NearestSearch {
   const double (&at() const)[3] { return at_; }
   std::uint32_t id() const { return id_; }
   ClosestPoint found() const {
-    const double (&at)[3] = id_ == kNoPrimitive ? p_ : at_;
+    const double(&at)[3] = id_ == kNoPrimitive ? p_ : at_;
     ClosestPoint found;
     found.point = {static_cast<float>(at[0]), static_cast<float>(at[1]), static_cast<float>(at[2])};
     if (id_ != kNoPrimitive)
@@ -188,7 +188,7 @@ class NearestSearch {
 
   void look_at_block(const TriangleBlock& block) {
     const unsigned near = triangles_near(ball_, block);
-    constexpr unsigned kPart = (1u << kWidth<VDouble>) - 1;
+    constexpr unsigned kPart = (1u << kWidth<VDouble>)-1;
     for (int i = 0; i < kBlock; i += kWidth<VDouble>)
       if (const unsigned lanes = near >> i & kPart; lanes != 0)
         look_at_triangles(block, i, lanes);
@@ -196,11 +196,10 @@ class NearestSearch {
 
   /// Triangles i, i + 1, ... of a block, by bits, side by side in double.
   void look_at_triangles(const TriangleBlock& block, int i, unsigned lanes) {
-    const auto corner = [i](const float (&c)[3][kBlock]) {
-      return Vec3<VDouble>{
-          grelha::GRELHA_ISA::take<VDouble>(c[0] + i),
-          grelha::GRELHA_ISA::take<VDouble>(c[1] + i),
-          grelha::GRELHA_ISA::take<VDouble>(c[2] + i)};
+    const auto corner = [i](const float(&c)[3][kBlock]) {
+      return Vec3<VDouble>{grelha::GRELHA_ISA::take<VDouble>(c[0] + i),
+                           grelha::GRELHA_ISA::take<VDouble>(c[1] + i),
+                           grelha::GRELHA_ISA::take<VDouble>(c[2] + i)};
     };
     const Vec3<VDouble> p{VDouble(p_[0]), VDouble(p_[1]), VDouble(p_[2])};
     const Vec3<VDouble> a = corner(block.a), b = corner(block.b), c = corner(block.c);
@@ -219,15 +218,18 @@ class NearestSearch {
     store(z, at.z);
     double least = of[__builtin_ctz(near)];
     each_bit(near, [&](int k) { least = min(of[k], least); });
-    each_bit(near & bits(distance == VDouble(least)),
-             [&](int k) { take(block.id[i + k], of[k], {x[k], y[k], z[k]}); });
+    each_bit(near & bits(distance == VDouble(least)), [&](int k) {
+      take(block.id[i + k], of[k], {x[k], y[k], z[k]});
+    });
   }
 
   template <class Shape>
   void look_at_array(const typename Shape::CellList& list, std::uint32_t first, std::uint32_t end) {
     for (std::uint32_t i = first; i < end; i += kWidth<Block>) {
-      unsigned near = primitives_near(ball_, list.fields, i);
-      near &= end - i < kWidth<Block> ? (1u << (end - i)) - 1 : (1u << kWidth<Block>) - 1;
+      unsigned near = ~0u;  // a kind may do without bounds
+      if constexpr (requires { primitives_near(ball_, list.fields, i); })
+        near = primitives_near(ball_, list.fields, i);
+      near &= end - i < kWidth<Block> ? (1u << (end - i)) - 1 : (1u << kWidth<Block>)-1;
       each_bit(near, [&](int k) { look(list.id[i + static_cast<std::uint32_t>(k)]); });
     }
   }

@@ -196,9 +196,8 @@ struct BlockCorners {
                                                        std::uint32_t i) {
   const auto at = [i](const float* field) { return load<Block>(field + i); };
   const Vec3<Block> axis{at(cones.axis[0]), at(cones.axis[1]), at(cones.axis[2])};
-  const Vec3<Block> from_base = ball.center - Vec3<Block>{at(cones.base[0]),
-                                                          at(cones.base[1]),
-                                                          at(cones.base[2])};
+  const Vec3<Block> from_base =
+      ball.center - Vec3<Block>{at(cones.base[0]), at(cones.base[1]), at(cones.base[2])};
   const Block height = at(cones.height);
   const Block narrow = at(cones.radius);
   const Block wide = narrow + at(cones.slope) * height;
@@ -211,10 +210,10 @@ struct BlockCorners {
   const Vec3<Block> near = near_on_segment(ends[0], ends[1]);
   const Block farthest = max(largest(ends[0]), largest(ends[1]));
   const Block near_length = length(near) * Block(1 + kLengthError) + Block(kLostLength);
-  const Block error = Block(kBesideError) * (length(from_base) + (height + (narrow + wide))) +
-                      Block(kLostLength);
-  const auto beyond =
-      ReachAlong(near, ends, farthest).surely_at_least() > (Block(ball.radius) + error) * near_length;
+  const Block error =
+      Block(kBesideError) * (length(from_base) + (height + (narrow + wide))) + Block(kLostLength);
+  const auto beyond = ReachAlong(near, ends, farthest).surely_at_least() >
+                      (Block(ball.radius) + error) * near_length;
   return ~bits(beyond);
 }
 

@@ -66,7 +66,9 @@ inline constexpr double kThin = 0x1p-12;
 
 /// True of triangles whose normal doubles lose.
 template <class Vector>
-[[gnu::always_inline]] inline auto is_thin(const Vector& to_b, const Vector& to_c, const Vector& n) {
+[[gnu::always_inline]] inline auto is_thin(const Vector& to_b,
+                                           const Vector& to_c,
+                                           const Vector& n) {
   return dot(n, n) < NumberOf<Vector>(kThin) * (dot(to_b, to_b) * dot(to_c, to_c));
 }
 

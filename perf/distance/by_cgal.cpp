@@ -37,9 +37,10 @@ class Tree : public OtherTree {
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Kernel::Point_3 p(points[i].x, points[i].y, points[i].z);
       const auto [at, one] = boxes_.closest_point_and_primitive(p);
-      found[i] = {{static_cast<float>(at.x()), static_cast<float>(at.y()), static_cast<float>(at.z())},
-                  static_cast<float>(std::sqrt(CGAL::squared_distance(at, p))),
-                  ids_[static_cast<std::size_t>(one - corners_.begin())]};
+      found[i] = {
+          {static_cast<float>(at.x()), static_cast<float>(at.y()), static_cast<float>(at.z())},
+          static_cast<float>(std::sqrt(CGAL::squared_distance(at, p))),
+          ids_[static_cast<std::size_t>(one - corners_.begin())]};
     }
   }
 

@@ -64,7 +64,8 @@ bool look(RTCPointQueryFunctionArguments* args) {
 
 class Tree : public OtherTree {
  public:
-  explicit Tree(const Triangles& t) : t_(t), device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
+  explicit Tree(const Triangles& t)
+      : t_(t), device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
     RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* const v = static_cast<float*>(rtcSetNewGeometryBuffer(
         g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), t.x.size()));

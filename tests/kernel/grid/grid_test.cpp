@@ -203,5 +203,41 @@ TEST(GridRows, HoldAPrimitiveInEachCellItsSurfaceTouches) {
   EXPECT_GT(points, 300000u);
 }
 
+// ---- levels of boxes ----
+
+bool is_within(const BlockBoxes& row, int k, const BlockBoxes& outer, int of) {
+  bool within = true;
+  for (int a = 0; a < 3; ++a)
+    within &= row.side[a][k] > row.side[3 + a][k] ||
+              (outer.side[a][of] <= row.side[a][k] && row.side[3 + a][k] <= outer.side[3 + a][of]);
+  return within;
+}
+
+TEST(BoxLevels, HoldEachCellOnceAndBoundWhatIsBelow) {
+  for (const Scene& scene : {ball_mesh(200, 100), random_mixture(3, 5000), stacked_sheets(400)}) {
+    const World world(scene, {});
+    for (const Grid& g : world.impl().grids) {
+      const BoxLevels& levels = g.levels;
+      std::set<std::uint32_t> cells(levels.cells.begin(), levels.cells.end());
+      EXPECT_EQ(cells.size(), levels.cells.size());
+      EXPECT_EQ(cells.size(), g.occupied);
+      for (const std::uint32_t cell : cells)
+        EXPECT_EQ(g.distance[cell], 0);
+      ASSERT_FALSE(levels.first.empty());
+      EXPECT_EQ(levels.rows.size(), levels.first.back() + 1u) << "the last level is one row";
+      for (std::size_t level = 1; level < levels.first.size(); ++level)
+        for (std::uint32_t row = levels.first[level - 1]; row < levels.first[level]; ++row)
+          for (int k = 0; k < kBlock; ++k) {
+            const std::uint32_t above = row - levels.first[level - 1];
+            EXPECT_TRUE(is_within(levels.rows[row],
+                                  k,
+                                  levels.rows[levels.first[level] + above / kBlock],
+                                  static_cast<int>(above % kBlock)));
+          }
+      EXPECT_EQ(levels.bytes(), box_level_bytes(cells.size()));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace grelha::test

@@ -1,11 +1,14 @@
 // Closest points and signed distances, against every primitive in long double.
 #include "grelha/all_hits.hpp"
 #include "grelha/distance.hpp"
+#include "grelha/isa.hpp"
 
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 
+#include "kernel/grid/world_impl.hpp"
+#include "kernel/shapes/foot.hpp"
 #include "tests/support/brute_force.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
@@ -38,6 +41,112 @@ TEST(ClosestPoint, IsThatOfBruteForce) {
         expect_closest(world, s, random.point(size), 2e-6 * size);
       }
     }
+}
+
+/// Looks at every primitive, in doubles as the search does.
+ClosestPoint nearest_of_all(const World& world, const Float3& p) {
+  const World::Impl& w = world.impl();
+  const double at[3] = {p.x, p.y, p.z};
+  Foot least{{}, kInf};
+  std::uint32_t id = kNoPrimitive;
+  for (std::uint32_t i = 0; i < w.primitives.ids.end(); ++i) {
+    const Foot foot = foot_on(w.view.geometry, i, at);
+    if (foot.distance < least.distance) {
+      least = foot;
+      id = i;
+    }
+  }
+  const auto narrow = [&](int a) { return static_cast<float>(least.at[a]); };
+  return {{narrow(0), narrow(1), narrow(2)}, static_cast<float>(least.distance), id};
+}
+
+/// The box of all primitives.
+struct SceneBox {
+  double middle[3], size = 0;
+
+  explicit SceneBox(const World& world) {
+    const SceneView& view = world.impl().view;
+    for (int a = 0; a < 3; ++a) {
+      middle[a] = .5 * (view.box_lo[a] + view.box_hi[a]);
+      size = std::max(size, double{view.box_hi[a]} - view.box_lo[a]);
+    }
+  }
+  Float3 from_middle(const Float3& way, double sizes) const {
+    return {static_cast<float>(middle[0] + sizes * size * way.x),
+            static_cast<float>(middle[1] + sizes * size * way.y),
+            static_cast<float>(middle[2] + sizes * size * way.z)};
+  }
+};
+
+/// In the surface, beside it, in the middle, around and far away.
+std::vector<Float3> points_everywhere(const World& world, const Scene& s, int each) {
+  Random random(21);
+  const SceneBox box(world);
+  std::vector<Float3> points;
+  const Triangles& t = s.geometry.triangles;
+  for (int i = 0; i < each && t.size() > 0; ++i) {
+    const std::uint32_t one = random.below(static_cast<std::uint32_t>(t.size()));
+    const Float3 corner = vertex(s, t.a[one]);
+    const Float3 edge = at(corner, random.unit(), minus(vertex(s, t.b[one]), corner));
+    const Float3 inside = at(edge, random.unit(), minus(vertex(s, t.c[one]), edge));
+    for (const Float3& p : {corner, edge, inside})
+      points.push_back(p);
+    points.push_back(at(inside, .01 * box.size, random.direction()));
+  }
+  for (const double sizes : {0., 1e-6, .5, 1., 10., 300., 1e4, 1e9})
+    for (int i = 0; i < each; ++i)
+      points.push_back(box.from_middle(random.direction(), sizes));
+  return points;
+}
+
+Scene moved(Scene s, double x, double y, double z) {
+  Triangles& t = s.geometry.triangles;
+  for (std::size_t i = 0; i < t.x.size(); ++i) {
+    t.x[i] = static_cast<float>(t.x[i] + x);
+    t.y[i] = static_cast<float>(t.y[i] + y);
+    t.z[i] = static_cast<float>(t.z[i] + z);
+  }
+  return s;
+}
+
+std::vector<Scene> all_sorts() {
+  std::vector<Scene> all{ball_mesh(60, 30),
+                         ball_mesh(40, 20, .2),
+                         moved(ball_mesh(60, 30), 1000, -3, 70000),
+                         torus_mesh(30, 20, .3),
+                         needles(4, 600),
+                         random_triangles(2, 900),
+                         random_mixture(8, 900),
+                         random_cones(6, 500),
+                         stacked_sheets(60),
+                         mesh_in_a_vast_scene()};
+  all.push_back(random_mixture(9, 300));
+  all.back().geometry.planes.add({0, -1.5f, 0}, {.2f, 2, .1f}, 0);
+  return all;
+}
+
+/// The search leaves out what cannot be nearest, and nothing else: no bound of a box or a primitive
+/// is above what doubles find, and of equal distance the lower id counts.
+TEST(ClosestPoint, HasTheBitsOfASearchWithoutBounds) {
+  const std::vector<Scene> scenes = all_sorts();
+  for (std::size_t k = 0; k < scenes.size(); ++k) {
+    const World world(scenes[k], {});
+    const std::vector<Float3> points = points_everywhere(world, scenes[k], 60);
+    std::vector<ClosestPoint> truth(points.size()), found(points.size());
+    std::transform(points.begin(), points.end(), truth.begin(), [&](const Float3& p) {
+      return nearest_of_all(world, p);
+    });
+    for (const Isa& isa : isas()) {
+      if (!isa.is_supported)
+        continue;
+      closest_points(world, points, found, kInf, {.isa = isa.name});
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        ASSERT_EQ(found[i].id, truth[i].id) << isa.name << ", scene " << k << ", point " << i;
+        ASSERT_EQ(found[i].distance, truth[i].distance);
+        ASSERT_EQ(found[i].point, truth[i].point);
+      }
+    }
+  }
 }
 
 TEST(ClosestPoint, OfConesAndPlanes) {
