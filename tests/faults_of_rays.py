@@ -113,8 +113,6 @@ FAULTS = [
           "kAlongError = 8 * kEps;", "kAlongError = 0;", "closest_point", "*WithoutBounds"),
     Fault("lengths without rounding", "kernel/shapes/distance_bound.hpp",
           "kLengthError = 8 * kEps;", "kLengthError = 0;", "closest_point", "*WithoutBounds"),
-    Fault("boxes seen from afar without rounding", "kernel/shapes/distance_bound.hpp",
-          "kBesideLost = 64 * kEps;", "kBesideLost = 0;", "closest_point", "*WithoutBounds"),
     Fault("squares of distances without rounding", "kernel/shapes/distance_bound.hpp",
           "16 * double{kEps} * magnitude(beside)", "0 * magnitude(beside)", "closest_point",
           "*WithoutBounds"),

@@ -26,8 +26,8 @@ struct ClosestPoint {
 ClosestPoint closest_point(const World& world,
                            Float3 point,
                            float radius = std::numeric_limits<float>::infinity());
-/// The same for many points. Reads options.threads and options.progress. Throws
-/// std::invalid_argument if the lengths differ.
+/// The same for many points, faster where each is near the one before. Reads options.threads,
+/// options.isa and options.progress. Throws std::invalid_argument if the lengths differ.
 void closest_points(const World& world,
                     std::span<const Float3> points,
                     std::span<ClosestPoint> found,
@@ -37,8 +37,8 @@ void closest_points(const World& world,
 /// Returns the distance to the closest surface, negative inside; see contains() for what inside
 /// means. 0 has no sign. Infinity if the scene is empty.
 float signed_distance(const World& world, Float3 point);
-/// The same for many points. Reads options.threads and options.progress. Throws
-/// std::invalid_argument if the lengths differ.
+/// The same for many points, faster where each is near the one before. Reads options.threads,
+/// options.isa and options.progress. Throws std::invalid_argument if the lengths differ.
 void signed_distances(const World& world,
                       std::span<const Float3> points,
                       std::span<float> distances,

@@ -78,11 +78,16 @@ struct SceneBox {
   }
 };
 
+/// The scenes of kAlike primitives are as far from 0 or from kFar, about: their distances differ in
+/// the last places of floats.
+constexpr Float3 kFar{6e3f, 6e3f, 6e3f};
+constexpr int kAlike = 400;
+
 /// In the surface, beside it, in the middle, around and far away.
 std::vector<Float3> points_everywhere(const World& world, const Scene& s, int each) {
   Random random(21);
   const SceneBox box(world);
-  std::vector<Float3> points;
+  std::vector<Float3> points{{}, kFar};
   const Triangles& t = s.geometry.triangles;
   for (int i = 0; i < each && t.size() > 0; ++i) {
     const std::uint32_t one = random.below(static_cast<std::uint32_t>(t.size()));
@@ -109,6 +114,54 @@ Scene moved(Scene s, double x, double y, double z) {
   return s;
 }
 
+/// Triangles whose nearest point is a corner of their boxes.
+Scene corners_around(std::uint64_t seed) {
+  Random random(seed);
+  Scene s = empty_scene();
+  for (int i = 0; i < kAlike; ++i) {
+    const Float3 p = at({}, 10, random.direction());
+    add_triangle(s,
+                 p,
+                 {p.x + std::copysign(.5f, p.x), p.y, p.z + std::copysign(.2f, p.z)},
+                 {p.x, p.y + std::copysign(.5f, p.y), p.z});
+  }
+  return s;
+}
+/// The same of a sheet, seen from afar.
+Scene corners_afar(std::uint64_t seed) {
+  Random random(seed);
+  Scene s = empty_scene();
+  for (int i = 0; i < kAlike; ++i) {
+    const double x = random.in(-1, 1), y = random.in(-1, 1);
+    const double far = kFar.x;
+    const double across = (far - x) * (far - x) + (far - y) * (far - y);
+    const double z = far - std::sqrt(3 * far * far - across);
+    const Float3 p{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
+    add_triangle(s, p, {p.x - .1f, p.y, p.z - .02f}, {p.x, p.y - .1f, p.z});
+  }
+  return s;
+}
+/// Balls and flat tubes that hold 0, close below their surface.
+Scene balls_around(std::uint64_t seed) {
+  Random random(seed);
+  Scene s = empty_scene();
+  for (int i = 0; i < kAlike; ++i)
+    s.geometry.spheres.add(at({}, 10, random.direction()), 10.01f, 0);
+  return s;
+}
+Scene tubes_around(std::uint64_t seed) {
+  Random random(seed);
+  Scene s = empty_scene();
+  for (int i = 0; i < kAlike; ++i) {
+    const Float3 axis = random.direction();
+    const Float3 way = cross(axis, random.direction());
+    const double length = std::hypot(way.x, way.y, way.z);
+    const Float3 across = at({}, 100 / length, way);
+    s.geometry.cones.add(at(across, -.01, axis), 100.01f, at(across, .01, axis), 100.01f, 0);
+  }
+  return s;
+}
+
 std::vector<Scene> all_sorts() {
   std::vector<Scene> all{ball_mesh(60, 30),
                          ball_mesh(40, 20, .2),
@@ -120,6 +173,9 @@ std::vector<Scene> all_sorts() {
                          random_cones(6, 500),
                          stacked_sheets(60),
                          mesh_in_a_vast_scene()};
+  for (std::uint64_t seed = 1; seed <= 8; ++seed)
+    for (const auto& make : {corners_around, corners_afar, balls_around, tubes_around})
+      all.push_back(make(seed));
   all.push_back(random_mixture(9, 300));
   all.back().geometry.planes.add({0, -1.5f, 0}, {.2f, 2, .1f}, 0);
   return all;
@@ -131,7 +187,7 @@ TEST(ClosestPoint, HasTheBitsOfASearchWithoutBounds) {
   const std::vector<Scene> scenes = all_sorts();
   for (std::size_t k = 0; k < scenes.size(); ++k) {
     const World world(scenes[k], {});
-    const std::vector<Float3> points = points_everywhere(world, scenes[k], 60);
+    const std::vector<Float3> points = points_everywhere(world, scenes[k], 40);
     std::vector<ClosestPoint> truth(points.size()), found(points.size());
     std::transform(points.begin(), points.end(), truth.begin(), [&](const Float3& p) {
       return nearest_of_all(world, p);
