@@ -118,7 +118,7 @@ FAULTS = [
           "*WithoutBounds"),
     Fault("cones without rounding", "kernel/shapes/distance_bound.hpp",
           "kBesideError = 32 * kEps;", "kBesideError = 0;", "closest_point", "*WithoutBounds"),
-    Fault("boxes of rows that miss a cell", "kernel/grid/box_levels.cpp",
+    Fault("boxes of rows that miss a cell", "kernel/grid/level_builder.cpp",
           "for (std::size_t i = 0; i < kBlock; ++i)\n    box.add(row, i);",
           "for (std::size_t i = 1; i < kBlock; ++i)\n    box.add(row, i);", "grid",
           "BoxLevels.*"),

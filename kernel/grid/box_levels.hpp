@@ -9,8 +9,6 @@
 
 namespace grelha {
 
-struct Grid;
-
 /// A tree of eight children a node, without pointers: eight cells that follow each other in space
 /// share a row of boxes, eight rows a row of the next level, up to a single one. So box k of row r
 /// bounds row 8 r + k of the level below, or the cell that stands at 8 r + k.
@@ -28,8 +26,10 @@ struct BoxLevels {
 /// Bytes of the levels over so many cells.
 std::size_t box_level_bytes(std::size_t cells);
 
-/// Builds the levels of a grid whose lists and distances are there. The box of a cell bounds those
-/// of its blocks of triangles, or is the cell, grown by the grid's pad, where it holds others.
-BoxLevels build_box_levels(const Grid& grid);
+inline std::size_t rows_of(std::size_t boxes) {
+  return (boxes + kBlock - 1) / kBlock;
+}
+/// Rows at which the levels over so many cells begin, and where all end.
+std::vector<std::uint32_t> level_starts(std::size_t cells);
 
 }  // namespace grelha

@@ -15,6 +15,7 @@
 #include "kernel/grid/cell_finder.hpp"
 #include "kernel/grid/distance_field.hpp"
 #include "kernel/grid/grid_layout.hpp"
+#include "kernel/grid/level_builder.hpp"
 #include "kernel/base/parallel_for.hpp"
 #include "kernel/shapes/duplicates.hpp"
 

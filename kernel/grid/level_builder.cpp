@@ -1,0 +1,166 @@
+#include "kernel/grid/level_builder.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <span>
+
+#include "kernel/grid/grid.hpp"
+#include "kernel/shapes/rounding.hpp"
+
+namespace grelha {
+namespace {
+
+constexpr float kNothing = std::numeric_limits<float>::infinity();
+
+/// Sides as in BlockBoxes; empty at first.
+struct FloatBox {
+  float side[6] = {kNothing, kNothing, kNothing, -kNothing, -kNothing, -kNothing};
+
+  void add(const BlockBoxes& row, std::size_t at) {
+    for (int a = 0; a < 3; ++a)
+      add(a, row.side[a][at], row.side[3 + a][at]);
+  }
+  void add(int a, float lo, float hi) {
+    side[a] = std::min(side[a], lo);
+    side[3 + a] = std::max(side[3 + a], hi);
+  }
+  void store(BlockBoxes& row, std::size_t at) const {
+    for (int s = 0; s < 6; ++s)
+      row.side[s][at] = side[s];
+  }
+};
+
+/// A cell that holds something, and where it is.
+struct HeldCell {
+  std::uint32_t at[3];
+  std::uint32_t cell;
+};
+
+std::vector<HeldCell> held_cells(const Grid& g) {
+  std::vector<HeldCell> held;
+  held.reserve(g.occupied);
+  std::uint32_t cell = 0;
+  for (std::uint32_t z = 0; z < g.cells[2]; ++z)
+    for (std::uint32_t y = 0; y < g.cells[1]; ++y)
+      for (std::uint32_t x = 0; x < g.cells[0]; ++x, ++cell)
+        if (g.distance[cell] == 0)
+          held.push_back({{x, y, z}, cell});
+  return held;
+}
+
+/// Puts cells in the order of their boxes: splits them across their longest side into two parts of
+/// whole nodes, then each part.
+class CellOrder {
+ public:
+  explicit CellOrder(const double (&cell)[3]) : cell_{cell[0], cell[1], cell[2]} {}
+
+  /// `node`: the most cells of a node of the level below, 8^k; recursion is as deep as the number
+  /// of cells has bits.
+  void sort(std::span<HeldCell> cells, std::size_t node) const {
+    while (node >= cells.size() && node > 1)
+      node /= kBlock;
+    if (cells.size() <= kBlock && node == 1)
+      return;
+    const int across = longest_side(cells);
+    const std::size_t nodes = (cells.size() + node - 1) / node;
+    const std::size_t middle = nodes / 2 * node;
+    const auto before = [across](const HeldCell& a, const HeldCell& b) {
+      return a.at[across] != b.at[across] ? a.at[across] < b.at[across] : a.cell < b.cell;
+    };
+    std::nth_element(
+        cells.begin(), cells.begin() + static_cast<std::ptrdiff_t>(middle), cells.end(), before);
+    sort(cells.first(middle), node);
+    sort(cells.subspan(middle), node);
+  }
+
+ private:
+  int longest_side(std::span<const HeldCell> cells) const {
+    std::uint32_t lo[3], hi[3];
+    std::copy_n(cells[0].at, 3, lo);
+    std::copy_n(cells[0].at, 3, hi);
+    for (const HeldCell& c : cells)
+      for (int a = 0; a < 3; ++a) {
+        lo[a] = std::min(lo[a], c.at[a]);
+        hi[a] = std::max(hi[a], c.at[a]);
+      }
+    const auto length = [&](int a) { return (hi[a] - lo[a]) * cell_[a]; };
+    int longest = 0;
+    for (int a = 1; a < 3; ++a)
+      if (length(a) > length(longest))
+        longest = a;
+    return longest;
+  }
+
+  const double cell_[3];
+};
+
+std::vector<std::uint32_t> ordered_cells(const Grid& g) {
+  std::vector<HeldCell> held = held_cells(g);
+  std::size_t node = 1;
+  while (node < held.size())
+    node *= kBlock;
+  CellOrder(g.cell).sort(held, node);
+  std::vector<std::uint32_t> cells(held.size());
+  std::transform(held.begin(), held.end(), cells.begin(), [](const HeldCell& c) { return c.cell; });
+  return cells;
+}
+
+bool holds_others(const CellStore& store, std::size_t cell) {
+  bool any = false;
+  for_each_finite_shape([&]<class Shape>() {
+    const auto& first = store.of<Shape>().first;
+    if (!Shape::kInBlocks && !first.empty())
+      any |= first[cell + 1] > first[cell];
+  });
+  return any;
+}
+
+FloatBox box_of_cell(const Grid& g, std::size_t cell) {
+  FloatBox box;
+  if (const auto& list = g.store.of<Triangle>(); !list.first.empty())
+    for (std::uint32_t i = list.first[cell]; i < list.first[cell + 1]; ++i)
+      box.add(list.boxes[i / kBlock], i % kBlock);
+  if (!holds_others(g.store, cell))
+    return box;
+  const CellBox whole = cell_box(g, cell);
+  for (int a = 0; a < 3; ++a)
+    box.add(a, float_not_above(whole.lo[a] - g.pad), float_not_below(whole.hi[a] + g.pad));
+  return box;
+}
+
+/// Writes rows of so many boxes, of which box_of(i) is each; those behind them are empty.
+template <class BoxOf>
+void write_rows(std::size_t count, BlockBoxes* rows, const BoxOf& box_of) {
+  for (std::size_t i = 0; i < rows_of(count) * kBlock; ++i)
+    (i < count ? box_of(i) : FloatBox()).store(rows[i / kBlock], i % kBlock);
+}
+
+FloatBox box_of_row(const BlockBoxes& row) {
+  FloatBox box;
+  for (std::size_t i = 0; i < kBlock; ++i)
+    box.add(row, i);
+  return box;
+}
+
+}  // namespace
+
+BoxLevels build_box_levels(const Grid& g) {
+  BoxLevels levels;
+  levels.cells = ordered_cells(g);
+  std::vector<std::uint32_t>& first = levels.first = level_starts(levels.cells.size());
+  levels.rows.resize(first.back());
+  first.pop_back();
+  std::size_t count = levels.cells.size();
+  for (std::size_t level = 0; level < first.size(); ++level, count = rows_of(count)) {
+    BlockBoxes* const rows = levels.rows.data() + first[level];
+    if (level == 0)
+      write_rows(count, rows, [&](std::size_t i) { return box_of_cell(g, levels.cells[i]); });
+    else
+      write_rows(count, rows, [&](std::size_t i) {
+        return box_of_row(levels.rows[first[level - 1] + i]);
+      });
+  }
+  return levels;
+}
+
+}  // namespace grelha
