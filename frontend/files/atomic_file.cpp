@@ -89,6 +89,7 @@ void take_mode(int file, const std::string& from) {
 /// from the target's, so that it replaces the file that a killed program left. The writing process
 /// holds a lock, which dies with it; another writer of the same target takes the next name.
 void AtomicFile::create_temp() {
+  const CreatesFile creates;
   const auto target = std::filesystem::path(target_);
   const std::string name = target.filename().string().substr(0, kLongestSaved);
   for (int attempt = 0; attempt < kNamesToTry; ++attempt) {

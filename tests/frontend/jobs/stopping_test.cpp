@@ -1,4 +1,6 @@
 // Signals and time stop the program, and the same command goes on. A part of long_work_test.
+#include "frontend/files/atomic_file.hpp"
+#include "frontend/files/unfinished.hpp"
 #include "frontend/jobs/partial.hpp"
 #include "frontend/jobs/stop_signals.hpp"
 #include "tests/frontend/jobs/long_work.hpp"
@@ -7,6 +9,9 @@
 #include <csignal>
 #include <filesystem>
 #include <thread>
+
+#include <sys/wait.h>
+#include <unistd.h>
 
 namespace grelha {
 namespace {
@@ -184,6 +189,27 @@ TEST_F(LongWork, SignalsStopReadingAndBuilding) {
   EXPECT_EQ(info.status, 143);
   EXPECT_LE(std::count(info.err.begin(), info.err.end(), '\n'), 2)
       << "the second is not begun: " << info.err;
+}
+
+/// A signal ends a program that creates one file after another: none stays.
+TEST_F(LongWork, StoppedWhileItCreatesFilesLeavesNothing) {
+  const std::string before = folder_.list();
+  const std::string target = folder_.file("x.png");
+  for (int i = 0; i < 300; ++i) {
+    const pid_t child = fork();
+    if (child == 0) {
+      handle_stop_signals(remove_and_end);
+      for (;;)
+        AtomicFile file(target);
+    }
+    ASSERT_GT(child, 0);
+    usleep(static_cast<useconds_t>(1000 + 37 * i % 2000));
+    kill(child, SIGTERM);
+    int status = 0;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    ASSERT_TRUE(WIFSIGNALED(status));
+    ASSERT_EQ(folder_.list(), before) << i;
+  }
 }
 
 TEST_F(LongWork, StoppedWritersLeaveNothing) {
