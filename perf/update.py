@@ -5,31 +5,11 @@
 
 --keep writes the table into docs/performance.md.
 """
-import argparse
 import pathlib
-import subprocess
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
-from bench import DOCS, ROOT, commit, cpu_name, put_section
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--program", default=ROOT / "build/release/grelha",
-                        help="the benchmark stands beside it [build/release/grelha]")
-    parser.add_argument("--keep", action="store_true", help="write into docs/performance.md")
-    asked, rest = parser.parse_known_args()
-    folder = pathlib.Path(asked.program).resolve().parent
-    done = subprocess.run([folder / "update", *rest], stdout=subprocess.PIPE, text=True)
-    if done.returncode:
-        sys.exit(done.returncode)
-    section = (f"{done.stdout}\n{cpu_name()}, one thread, commit {commit()}, "
-               "`./run perf update --keep`.")
-    if asked.keep:
-        put_section(DOCS / "performance.md", "perf/update.py", section)
-    print(section)
-
+from bench import table_bench
 
 if __name__ == "__main__":
-    main()
+    table_bench(__doc__, "update")

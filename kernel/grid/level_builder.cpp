@@ -31,21 +31,21 @@ struct FloatBox {
 };
 
 /// A cell that holds something, and where it is.
-struct HeldCell {
+struct OccupiedCell {
   std::uint32_t at[3];
   std::uint32_t cell;
 };
 
-std::vector<HeldCell> held_cells(const Grid& g) {
-  std::vector<HeldCell> held;
-  held.reserve(g.occupied);
+std::vector<OccupiedCell> occupied_cells(const Grid& g) {
+  std::vector<OccupiedCell> occupied;
+  occupied.reserve(g.occupied);
   std::uint32_t cell = 0;
   for (std::uint32_t z = 0; z < g.cells[2]; ++z)
     for (std::uint32_t y = 0; y < g.cells[1]; ++y)
       for (std::uint32_t x = 0; x < g.cells[0]; ++x, ++cell)
         if (g.distance[cell] == 0)
-          held.push_back({{x, y, z}, cell});
-  return held;
+          occupied.push_back({{x, y, z}, cell});
+  return occupied;
 }
 
 /// Puts cells in the order of their boxes: splits them across their longest side into two parts of
@@ -56,7 +56,7 @@ class CellOrder {
 
   /// `node`: the most cells of a node of the level below, 8^k; recursion is as deep as the number
   /// of cells has bits.
-  void sort(std::span<HeldCell> cells, std::size_t node) const {
+  void sort(std::span<OccupiedCell> cells, std::size_t node) const {
     while (node >= cells.size() && node > 1)
       node /= kBlock;
     if (cells.size() <= kBlock && node == 1)
@@ -64,7 +64,7 @@ class CellOrder {
     const int across = longest_side(cells);
     const std::size_t nodes = (cells.size() + node - 1) / node;
     const std::size_t middle = nodes / 2 * node;
-    const auto before = [across](const HeldCell& a, const HeldCell& b) {
+    const auto before = [across](const OccupiedCell& a, const OccupiedCell& b) {
       return a.at[across] != b.at[across] ? a.at[across] < b.at[across] : a.cell < b.cell;
     };
     std::nth_element(
@@ -74,11 +74,11 @@ class CellOrder {
   }
 
  private:
-  int longest_side(std::span<const HeldCell> cells) const {
+  int longest_side(std::span<const OccupiedCell> cells) const {
     std::uint32_t lo[3], hi[3];
     std::copy_n(cells[0].at, 3, lo);
     std::copy_n(cells[0].at, 3, hi);
-    for (const HeldCell& c : cells)
+    for (const OccupiedCell& c : cells)
       for (int a = 0; a < 3; ++a) {
         lo[a] = std::min(lo[a], c.at[a]);
         hi[a] = std::max(hi[a], c.at[a]);
@@ -95,17 +95,19 @@ class CellOrder {
 };
 
 std::vector<std::uint32_t> ordered_cells(const Grid& g) {
-  std::vector<HeldCell> held = held_cells(g);
+  std::vector<OccupiedCell> occupied = occupied_cells(g);
   std::size_t node = 1;
-  while (node < held.size())
+  while (node < occupied.size())
     node *= kBlock;
-  CellOrder(g.cell).sort(held, node);
-  std::vector<std::uint32_t> cells(held.size());
-  std::transform(held.begin(), held.end(), cells.begin(), [](const HeldCell& c) { return c.cell; });
+  CellOrder(g.cell).sort(occupied, node);
+  std::vector<std::uint32_t> cells(occupied.size());
+  std::transform(occupied.begin(), occupied.end(), cells.begin(), [](const OccupiedCell& c) {
+    return c.cell;
+  });
   return cells;
 }
 
-bool holds_others(const CellStore& store, std::size_t cell) {
+bool has_other_kinds(const CellStore& store, std::size_t cell) {
   bool any = false;
   for_each_finite_shape([&]<class Shape>() {
     const auto& first = store.of<Shape>().first;
@@ -120,7 +122,7 @@ FloatBox box_of_cell(const Grid& g, std::size_t cell) {
   if (const auto& list = g.store.of<Triangle>(); !list.first.empty())
     for (std::uint32_t i = list.first[cell]; i < list.first[cell + 1]; ++i)
       box.add(list.boxes[i / kBlock], i % kBlock);
-  if (!holds_others(g.store, cell))
+  if (!has_other_kinds(g.store, cell))
     return box;
   const CellBox whole = cell_box(g, cell);
   for (int a = 0; a < 3; ++a)

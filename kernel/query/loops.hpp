@@ -35,7 +35,7 @@ inline Hit trace_one(const SceneView& scene, const Ray& ray, const Filter* filte
   RayFilter of_ray;
   if (filter)
     of_ray = {&filter->skip, &filter->mask, filter->masks.data(), scene.copies};
-  // one call of it: with two its parts were functions of their own
+  // called once: of two calls the compiler inlines neither
   return trace_one<kAny>(scene, ray, filter ? &of_ray : nullptr);
 }
 inline Hit closest_one(const SceneView& scene, const Ray& ray, const Filter* filter) {

@@ -268,6 +268,13 @@ inline bool is_finite(const float (&p)[3]) {
   return p[0] - p[0] == 0 && p[1] - p[1] == 0 && p[2] - p[2] == 0;
 }
 
+inline bool is_nearer(const Float3& a, const Float3& b, double distance) {
+  const double x = static_cast<double>(a.x) - static_cast<double>(b.x);
+  const double y = static_cast<double>(a.y) - static_cast<double>(b.y);
+  const double z = static_cast<double>(a.z) - static_cast<double>(b.z);
+  return x * x + y * y + z * z < distance * distance;
+}
+
 /// Finds the closest points of many, of which neighbours are near each other.
 inline void closest_points(const SceneView& scene,
                            const Float3* points,
@@ -275,18 +282,22 @@ inline void closest_points(const SceneView& scene,
                            float radius,
                            ClosestPoint* found) {
   bool any = false;
-  double last[3] = {};
+  double last[3] = {}, last_distance = 0;
+  const Float3* before = points;
   for (std::size_t i = 0; i < count; ++i) {
     const float p[3] = {points[i].x, points[i].y, points[i].z};
     found[i] = {points[i]};
     if (!is_finite(p) || !(radius >= 0))
       continue;
     NearestSearch search(scene, p, static_cast<double>(radius));
-    if (any)
+    // An answer bounds that of a point nearer than it. To ask for no other saves waiting for it.
+    if (any && is_nearer(points[i], *before, last_distance))
       search.expect(last);
     search.search();
     found[i] = search.found();
     any = search.id() != kNoPrimitive;
+    before = points + i;
+    last_distance = static_cast<double>(found[i].distance);
     for (int a = 0; a < 3; ++a)
       last[a] = search.at()[a];
   }

@@ -148,6 +148,25 @@ def csv_bench(doc, name, command, draw, told):
     print(section, numbers, chart, sep="\n")
 
 
+def table_bench(doc, name):
+    """Runs a benchmark that prints a table, and prints it; --keep: into docs/performance.md."""
+    parser = argparse.ArgumentParser(description=doc.partition("\n")[0])
+    parser.add_argument("--program", default=ROOT / "build/release/grelha",
+                        help="the benchmark stands beside it [build/release/grelha]")
+    parser.add_argument("--keep", action="store_true", help="write into docs/performance.md")
+    asked, rest = parser.parse_known_args()
+    folder = pathlib.Path(asked.program).resolve().parent
+    done = subprocess.run([folder / name, *rest], stdout=subprocess.PIPE, text=True)
+    if done.returncode:
+        print(done.stdout)
+        sys.exit(done.returncode)
+    section = (f"{done.stdout}\n{cpu_name()}, one thread, commit {commit()}, "
+               f"`./run perf {name} --keep`.")
+    if asked.keep:
+        put_section(DOCS / "performance.md", f"perf/{name}.py", section)
+    print(section)
+
+
 def commit():
     """The one that is measured."""
     done = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"],
