@@ -147,6 +147,7 @@ bool accumulate(const World& world,
   };
   std::size_t done = a.done.size() - to_render.left();
   const auto take_strip = [&](const Strip& strip, const std::int64_t* sums) {
+    bool stopped = false;
 #pragma omp critical(grelha_progress)
     {
       add_rows(a, strip.part.rows, sums);
@@ -155,8 +156,9 @@ bool accumulate(const World& world,
       progress.report(static_cast<double>(done) / static_cast<double>(a.done.size()));
       if (progress.stopped())
         progress.resume();  // no thread changes the sums meanwhile
+      stopped = progress.stopped();
     }
-    return !progress.stopped();
+    return !stopped;
   };
   run_fork_safe([&] {
     render_strips(world.impl(), setup, options, to_render.left(), next_strip, take_strip, stats);

@@ -1,5 +1,7 @@
 // Pictures rendered in parts, interrupted, kept in files and joined: the bits of the whole.
 #include <algorithm>
+#include <chrono>
+#include <thread>
 
 #include "frontend/jobs/merge.hpp"
 #include "frontend/jobs/partial.hpp"
@@ -77,6 +79,25 @@ TEST_P(Parts, StoppedAnywhereGoesOnToTheSameBits) {
   }
   EXPECT_EQ(static_cast<std::size_t>(calls), p.sums.done.size()) << "every piece once";
   EXPECT_TRUE(same_bits(picture_so_far(p.sums), whole));
+}
+
+/// A thread that saves the work holds up no other: a render that is told to go on ends complete.
+TEST(LongParts, InterruptedByEveryPieceEndsComplete) {
+  Job job = make_job({"balls", 1, ""});
+  job.file.camera.width = 8;
+  job.file.camera.height = 4096;
+  const World world(job.file.scene, {});
+  job.options.threads = 4;
+  job.options.progress = [](double) { return false; };
+  const auto go_on = [] {
+    std::this_thread::sleep_for(std::chrono::microseconds(100));
+    return true;
+  };
+  RenderStats stats;
+  for (int i = 0; i < 20; ++i) {
+    Accumulator a = make_accumulator(job.file.camera, job.options);
+    ASSERT_TRUE(accumulate(world, job.file.camera, job.options, a, stats, {}, go_on)) << i;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes,
