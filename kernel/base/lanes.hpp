@@ -18,6 +18,7 @@
 #include <cstdint>
 
 #include "kernel/base/isa.hpp"
+#include "kernel/base/lanes_four.hpp"
 
 #if GRELHA_ISA_NUMBER == 1
 #include "kernel/base/lanes_scalar.hpp"
@@ -26,87 +27,16 @@ using VFloat = float;
 using Block = float;
 using VDouble = double;
 }  // namespace grelha::GRELHA_ISA
-#elif GRELHA_ISA_NUMBER == 2
-#include "kernel/base/lanes_sse2.hpp"
-#elif GRELHA_ISA_NUMBER == 3
-#include "kernel/base/lanes_avx2.hpp"
 #else
-#include "kernel/base/lanes_avx512.hpp"
+#include "kernel/base/lanes_simd.hpp"
 #endif
 
 namespace grelha::GRELHA_ISA {
-
-#if GRELHA_ISA_NUMBER > 1
-template <class A>
-inline bool any(const SimdMask<A>& m) {
-  return bits(m) != 0;
-}
-template <class A>
-inline bool any(const SimdDoubleMask<A>& m) {
-  return bits(m) != 0;
-}
-template <class A>
-inline bool none(const SimdMask<A>& m) {
-  return bits(m) == 0;
-}
-template <class A>
-inline bool none(const SimdDoubleMask<A>& m) {
-  return bits(m) == 0;
-}
-#endif
 
 /// The greater magnitude of two; of a NaN it is not the same on every instruction set.
 template <class Real>
 inline Real max_abs(const Real& a, const Real& b) {
   return max(magnitude(a), magnitude(b));
-}
-
-/// Reduces the lanes of each of four registers, two by two, and stores the results; reduces the
-/// results of many such fours together in `all`.
-#if GRELHA_ISA_NUMBER == 1
-template <class Take>
-inline void reduce_lane(
-    float a, float b, float c, float d, const Take& take, float (&to)[4], float (&all)[4]) {
-  const float four[4] = {a, b, c, d};
-  for (int i = 0; i < 4; ++i) {
-    to[i] = four[i];
-    all[i] = take(four[i], all[i]);
-  }
-}
-#else
-template <class Take>
-[[gnu::always_inline]] inline void reduce_lane(const VFloat& a,
-                                               const VFloat& b,
-                                               const VFloat& c,
-                                               const VFloat& d,
-                                               const Take& take,
-                                               float (&to)[4],
-                                               float (&all)[4]) {
-  const VFloat ab = take(shuffled<0x44>(a, b), shuffled<0xEE>(a, b));
-  const VFloat cd = take(shuffled<0x44>(c, d), shuffled<0xEE>(c, d));
-  const Sse2 four = folded(take(shuffled<0x88>(ab, cd), shuffled<0xDD>(ab, cd)), take);
-  store(to, four);
-  store(all, take(four, Sse2::load_unaligned(all)));
-}
-#endif
-/// The same with the least lane of each, or the greatest.
-[[gnu::always_inline]] inline void lane_mins(const VFloat& a,
-                                             const VFloat& b,
-                                             const VFloat& c,
-                                             const VFloat& d,
-                                             float (&to)[4],
-                                             float (&all)[4]) {
-  reduce_lane(
-      a, b, c, d, [](const auto& x, const auto& y) { return min(x, y); }, to, all);
-}
-[[gnu::always_inline]] inline void lane_maxs(const VFloat& a,
-                                             const VFloat& b,
-                                             const VFloat& c,
-                                             const VFloat& d,
-                                             float (&to)[4],
-                                             float (&all)[4]) {
-  reduce_lane(
-      a, b, c, d, [](const auto& x, const auto& y) { return max(x, y); }, to, all);
 }
 
 /// Calls visit(i) for each bit i, the lowest first.

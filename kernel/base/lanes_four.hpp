@@ -1,7 +1,8 @@
 #pragma once
-// Four floats side by side on every instruction set: x, y and z of one ray, and one more. They
-// are the compiler's own vectors, which exist on every processor.
+// The compiler's own vectors, which exist on every processor and convert, shuffle, compare and
+// multiply there. Four floats side by side hold x, y and z of one ray, and one more.
 
+#include <cstddef>
 #include <cstdint>
 
 #ifdef __SSE2__
@@ -12,8 +13,15 @@
 
 namespace grelha::GRELHA_ISA {
 
-using Four = float __attribute__((vector_size(16)));
-using FourInts = std::int32_t __attribute__((vector_size(16)));  ///< as a mask: 0 or -1
+template <class T, std::size_t count>
+struct VectorOf {
+  typedef T Type __attribute__((vector_size(sizeof(T) * count)));  // GCC wants no `using` here
+};
+template <class T, std::size_t count>
+using Vector = typename VectorOf<T, count>::Type;
+
+using Four = Vector<float, 4>;
+using FourInts = Vector<std::int32_t, 4>;  ///< as a mask: 0 or -1
 
 inline Four four(float x) {
   return Four{x, x, x, x};
@@ -31,18 +39,30 @@ inline void store(std::uint32_t (&to)[4][1], const FourInts& a) {
   __builtin_memcpy(to, &a, sizeof a);
 }
 
-/// As those of lanes: of NaN and anything the second.
+/// As min and max of lanes: of NaN and anything the second.
+struct TakeLeast {
+  template <class V>
+  V operator()(const V& a, const V& b) const {
+    return a < b ? a : b;
+  }
+};
+struct TakeMost {
+  template <class V>
+  V operator()(const V& a, const V& b) const {
+    return a > b ? a : b;
+  }
+};
 inline Four min(const Four& a, const Four& b) {
-  return a < b ? a : b;
+  return TakeLeast{}(a, b);
 }
 inline Four max(const Four& a, const Four& b) {
-  return a > b ? a : b;
+  return TakeMost{}(a, b);
 }
 inline FourInts min(const FourInts& a, const FourInts& b) {
-  return a < b ? a : b;
+  return TakeLeast{}(a, b);
 }
 inline FourInts max(const FourInts& a, const FourInts& b) {
-  return a > b ? a : b;
+  return TakeMost{}(a, b);
 }
 inline Four magnitude(const Four& a) {
   return reinterpret_cast<Four>(reinterpret_cast<FourInts>(a) & 0x7FFFFFFF);
@@ -91,10 +111,10 @@ inline bool any(const FourInts& mask) {
   return bits(mask) != 0;
 }
 inline float least(const Four& a) {
-  return together(a, [](const Four& x, const Four& y) { return min(x, y); })[0];
+  return together(a, TakeLeast{})[0];
 }
 inline float most(const Four& a) {
-  return together(a, [](const Four& x, const Four& y) { return max(x, y); })[0];
+  return together(a, TakeMost{})[0];
 }
 
 }  // namespace grelha::GRELHA_ISA

@@ -110,6 +110,15 @@ inline float lane_min(float a) {
 inline float lane_max(float a) {
   return a;
 }
+/// Reduces the lanes of each of four registers and stores the results; reduces the results of many
+/// such fours together in `all`. Take: TakeLeast or TakeMost.
+template <class Take>
+inline void reduce_lanes(const float (&of)[4], const Take& take, float (&to)[4], float (&all)[4]) {
+  for (int i = 0; i < 4; ++i) {
+    to[i] = of[i];
+    all[i] = take(of[i], all[i]);
+  }
+}
 /// The lanes in which a comparison of words holds.
 inline bool mask_of(std::uint32_t a) {
   return a != 0;

@@ -1,29 +1,29 @@
 #pragma once
 // Sums of light, a pixel at a time.
 
+#include "kernel/base/lanes_four.hpp"
 #include "kernel/scene/shading_view.hpp"
 #include "kernel/base/vec3.hpp"
 
 namespace grelha::GRELHA_ISA {
 
-/// Lanes whose light is converted together, and the compiler's vectors of that many elements.
+/// Lanes whose light is converted together.
 inline constexpr int kConverted = kSimdWidth < 8 ? kSimdWidth : 8;
-using Floats = float __attribute__((vector_size(4 * kConverted)));
-using Doubles = double __attribute__((vector_size(8 * kConverted)));
-using Integers = std::int64_t __attribute__((vector_size(8 * kConverted)));
 
 /// Light in units of the sums, ties away from zero; NaN counts as 0. The compiler's own vectors
 /// know which instruction sets can convert to such integers.
 inline void light_units(const VFloat& x, float most, std::int64_t (&units)[kSimdWidth]) {
+  using Doubles = Vector<double, kConverted>;
   const VFloat number = select(x == x, x, VFloat(0));
   float light[kSimdWidth];
   store(light, max(min(number, VFloat(most)), VFloat(0 - most)));
   for (int k = 0; k < kSimdWidth; k += kConverted) {
-    Floats f;
+    Vector<float, kConverted> f;
     __builtin_memcpy(&f, light + k, sizeof f);
     const Doubles u = __builtin_convertvector(f, Doubles) * kLightUnit;
     const Doubles half = Doubles{} + .5;
-    const Integers i = __builtin_convertvector(u + (u < 0 ? 0 - half : half), Integers);
+    const auto i =
+        __builtin_convertvector(u + (u < 0 ? 0 - half : half), Vector<std::int64_t, kConverted>);
     __builtin_memcpy(units + k, &i, sizeof i);
   }
 }

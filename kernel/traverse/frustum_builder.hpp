@@ -165,9 +165,10 @@ class FrustumBuilder {
       const RayPositions v = positions(f_.v);
       const auto least = [&](const VFloat& x) { return select(meets, x, VFloat(kInfinity)); };
       const auto most = [&](const VFloat& x) { return select(meets, x, VFloat(-kInfinity)); };
-      lane_mins(
-          least(u.first), least(u.last), least(v.first), least(v.last), groups_.lo[group], lo);
-      lane_maxs(most(u.first), most(u.last), most(v.first), most(v.last), groups_.hi[group], hi);
+      const VFloat lows[] = {least(u.first), least(u.last), least(v.first), least(v.last)};
+      const VFloat highs[] = {most(u.first), most(u.last), most(v.first), most(v.last)};
+      reduce_lanes(lows, TakeLeast{}, groups_.lo[group], lo);
+      reduce_lanes(highs, TakeMost{}, groups_.hi[group], hi);
     });
     farthest_ = max(farthest_, lane_max(wide));
     slope_ = lane_max(steep);
