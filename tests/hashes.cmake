@@ -26,7 +26,7 @@ set(pictures
 
 file(MAKE_DIRECTORY "${SCRATCH}")
 if(ISA)
-  execute_process(COMMAND "${PROGRAM}" render "${ROOT}/scenes/data/glass.nff" --quiet --size 1x1
+  execute_process(COMMAND ${PROGRAM} render "${ROOT}/scenes/data/glass.nff" --quiet --size 1x1
     --isa ${ISA} -o "${SCRATCH}/${ISA}.pfm" RESULT_VARIABLE status ERROR_VARIABLE words)
   if(NOT status EQUAL 0)
     if(NOT words MATCHES "this (build|processor) has no ${ISA}")
@@ -60,7 +60,7 @@ else()
     set(size --size ${words})
   endif()
   set(file "${SCRATCH}/${NAME}.nff")
-  execute_process(COMMAND "${PROGRAM}" scene ${generator} ${size} -o "${file}"
+  execute_process(COMMAND ${PROGRAM} scene ${generator} ${size} -o "${file}"
     RESULT_VARIABLE status OUTPUT_QUIET ERROR_QUIET)
   if(NOT status EQUAL 0)
     message(FATAL_ERROR "cannot write the scene ${scene}")
@@ -70,10 +70,10 @@ file(SHA256 "${file}" scene_hash)
 
 set(picture_hash)
 set(instruction_sets)
-foreach(isa scalar sse2 avx2 avx512)
+foreach(isa scalar sse2 avx2 avx512 neon)
   foreach(packet 1 64 256)
     set(image "${SCRATCH}/${NAME}-${isa}-${packet}.pfm")
-    execute_process(COMMAND "${PROGRAM}" render "${file}" --quiet --size 96x72 --packet ${packet}
+    execute_process(COMMAND ${PROGRAM} render "${file}" --quiet --size 96x72 --packet ${packet}
       --isa ${isa} ${options} -o "${image}"
       RESULT_VARIABLE status ERROR_VARIABLE words)
     if(NOT status EQUAL 0)

@@ -34,16 +34,18 @@ add_test(NAME other_programs COMMAND ${CMAKE_COMMAND} -E env PATH=/usr/bin:$ENV{
 set_tests_properties(other_programs PROPERTIES LABELS image SKIP_RETURN_CODE 77)
 
 file(STRINGS ${CMAKE_CURRENT_SOURCE_DIR}/hashes.txt lines REGEX "^[a-z]")
+set(program ${CMAKE_CROSSCOMPILING_EMULATOR} $<TARGET_FILE:grelha>)
 foreach(line IN LISTS lines)
   string(REGEX MATCH "^[a-z]+" name "${line}")
-  add_test(NAME hash_${name} COMMAND ${CMAKE_COMMAND} -D PROGRAM=$<TARGET_FILE:grelha>
+  add_test(NAME hash_${name} COMMAND ${CMAKE_COMMAND} -D "PROGRAM=${program}"
     -D NAME=${name} -D ROOT=${PROJECT_SOURCE_DIR}
     -D SCRATCH=${CMAKE_CURRENT_BINARY_DIR}/hashes -P ${CMAKE_CURRENT_SOURCE_DIR}/hashes.cmake)
   set_tests_properties(hash_${name} PROPERTIES LABELS image SKIP_REGULAR_EXPRESSION "SKIPPED")
 endforeach()
 # Those that are not there say so.
-foreach(isa sse2 avx2 avx512)
-  add_test(NAME hash_by_${isa} COMMAND ${CMAKE_COMMAND} -D PROGRAM=$<TARGET_FILE:grelha>
+get_property(isas GLOBAL PROPERTY GRELHA_COPIES)
+foreach(isa IN LISTS isas)
+  add_test(NAME hash_by_${isa} COMMAND ${CMAKE_COMMAND} -D "PROGRAM=${program}"
     -D ISA=${isa} -D ROOT=${PROJECT_SOURCE_DIR} -D SCRATCH=${CMAKE_CURRENT_BINARY_DIR}/hashes
     -P ${CMAKE_CURRENT_SOURCE_DIR}/hashes.cmake)
   set_tests_properties(hash_by_${isa} PROPERTIES LABELS image SKIP_REGULAR_EXPRESSION "SKIPPED")

@@ -23,6 +23,7 @@ constexpr std::array kIsas{Name{"scalar", "scalar"},
                            Name{"sse2", "sse2"},
                            Name{"avx2", "avx2"},
                            Name{"avx512", "avx512"},
+                           Name{"neon", "neon"},
                            Name{"best", "best"}};
 
 /// Adds one option: CLI11 finds its text, `take` parses it, and errors use our own messages.
@@ -228,7 +229,7 @@ void add_effects(CLI::App& sub, Effects& effects) {
 void add_traversal(CLI::App& sub, RenderCommand& command) {
   value(sub,
         "--isa",
-        "scalar|sse2|avx2|avx512|best",
+        "scalar|sse2|avx2|avx512|neon|best",
         "instruction set [best]",
         [&command](const std::string& text) { command.render.isa = choice("--isa", text, kIsas); })
       ->group(kUnlisted);

@@ -8,7 +8,7 @@ namespace grelha {
 
 /// One compiled copy of the kernel's hot loops.
 struct Isa {
-  std::string_view name;  ///< "scalar", "sse2", "avx2", "avx512"
+  std::string_view name;  ///< "scalar", "sse2", "avx2", "avx512", "neon"
   bool compiled, is_supported;
 };
 /// All copies this version knows, scalar first.

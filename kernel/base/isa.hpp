@@ -16,11 +16,16 @@
 #define GRELHA_ISA_sse2 2
 #define GRELHA_ISA_avx2 3
 #define GRELHA_ISA_avx512 4
+#define GRELHA_ISA_neon 5
 #define GRELHA_JOIN_(a, b) a##b
 #define GRELHA_JOIN(a, b) GRELHA_JOIN_(a, b)
 #define GRELHA_ISA_NUMBER GRELHA_JOIN(GRELHA_ISA_, GRELHA_ISA)
 
-#if GRELHA_ISA_NUMBER > 1
+#if GRELHA_ISA_NUMBER == 5
+#include <arm_neon.h>
+#elif GRELHA_ISA_NUMBER > 1
 #include <immintrin.h>
+#endif
+#if GRELHA_ISA_NUMBER > 1
 #include <xsimd/xsimd.hpp>
 #endif

@@ -17,9 +17,12 @@ using BlockArch = xsimd::sse2;
 #elif GRELHA_ISA_NUMBER == 3
 using Arch = xsimd::avx2;
 using BlockArch = xsimd::avx2;
-#else
+#elif GRELHA_ISA_NUMBER == 4
 using Arch = xsimd::avx512bw;
 using BlockArch = xsimd::avx2;
+#else
+using Arch = xsimd::neon64;
+using BlockArch = xsimd::neon64;
 #endif
 using VFloat = xsimd::batch<float, Arch>;
 using VDouble = xsimd::batch<double, Arch>;
@@ -62,11 +65,19 @@ inline xsimd::batch<T, A> select(const xsimd::batch_bool<T, A>& m,
 /// The selects of the scalar twin, NaN and signed zeros included: minps and maxps are just these.
 template <std::floating_point T, class A>
 inline xsimd::batch<T, A> min(const xsimd::batch<T, A>& a, const xsimd::batch<T, A>& b) {
+#if GRELHA_ISA_NUMBER == 5
+  return xsimd::select(a < b, a, b);
+#else
   return xsimd::min(a, b);
+#endif
 }
 template <std::floating_point T, class A>
 inline xsimd::batch<T, A> max(const xsimd::batch<T, A>& a, const xsimd::batch<T, A>& b) {
+#if GRELHA_ISA_NUMBER == 5
+  return xsimd::select(a > b, a, b);
+#else
   return xsimd::max(a, b);
+#endif
 }
 template <class T, class A>
 inline xsimd::batch<T, A> square_root(const xsimd::batch<T, A>& a) {
@@ -87,6 +98,20 @@ inline xsimd::batch_bool<T, A> mask_or(const xsimd::batch_bool<T, A>& a,
   return a | b;
 }
 // What a mask is: a register of lanes, or a number with a bit a lane.
+#if GRELHA_ISA_NUMBER == 5
+inline unsigned register_bits(uint32x4_t m) {
+  return vaddvq_u32(vandq_u32(m, uint32x4_t{1, 2, 4, 8}));
+}
+inline unsigned register_bits(uint64x2_t m) {
+  return unsigned(vaddvq_u64(vandq_u64(m, uint64x2_t{1, 2})));
+}
+inline uint32x4_t register_and_not(uint32x4_t a, uint32x4_t b) {
+  return vbicq_u32(a, b);
+}
+inline uint64x2_t register_and_not(uint64x2_t a, uint64x2_t b) {
+  return vbicq_u64(a, b);
+}
+#else
 inline unsigned register_bits(__m128 m) {
   return unsigned(_mm_movemask_ps(m));
 }
@@ -99,6 +124,7 @@ inline __m128 register_and_not(__m128 a, __m128 b) {
 inline __m128d register_and_not(__m128d a, __m128d b) {
   return _mm_andnot_pd(b, a);
 }
+#endif
 #ifdef __AVX2__
 inline unsigned register_bits(__m256 m) {
   return unsigned(_mm256_movemask_ps(m));
@@ -284,6 +310,8 @@ using NarrowFloats = Vector<float, VDouble::size>;
   return VDouble(_mm512_cvtps_pd(bits_as<__m256>(a)));
 #elif GRELHA_ISA_NUMBER == 3
   return VDouble(_mm256_cvtps_pd(bits_as<__m128>(a)));
+#elif GRELHA_ISA_NUMBER == 5
+  return VDouble(vcvt_f64_f32(bits_as<float32x2_t>(a)));
 #else
   return VDouble(_mm_cvtps_pd(bits_as<__m128>(__builtin_shufflevector(a, a, 0, 1, 0, 1))));
 #endif
@@ -293,6 +321,8 @@ using NarrowFloats = Vector<float, VDouble::size>;
   return bits_as<NarrowFloats>(_mm512_cvtpd_ps(a.data));
 #elif GRELHA_ISA_NUMBER == 3
   return bits_as<NarrowFloats>(_mm256_cvtpd_ps(a.data));
+#elif GRELHA_ISA_NUMBER == 5
+  return bits_as<NarrowFloats>(vcvt_f32_f64(a.data));
 #else
   return half<0>(bits_as<Four>(_mm_cvtpd_ps(a.data)));
 #endif

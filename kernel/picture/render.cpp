@@ -8,7 +8,7 @@ namespace grelha {
 
 std::vector<Isa> isas() {
   std::vector<Isa> out;
-  for (const std::string_view name : {"scalar", "sse2", "avx2", "avx512"}) {
+  for (const std::string_view name : {"scalar", "sse2", "avx2", "avx512", "neon"}) {
     const Variant* const v = find_variant(name);
     out.push_back({name, v != nullptr, v != nullptr && v->is_supported()});
   }

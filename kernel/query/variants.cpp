@@ -41,6 +41,15 @@ const Variant kAvx2{"avx2", 8, has_avx2, avx2::kLoops};
 }  // namespace
 #endif
 
+#ifdef GRELHA_NEON
+namespace neon {
+extern const VariantLoops kLoops;
+}
+namespace {
+const Variant kNeon{"neon", 4, always, neon::kLoops};
+}  // namespace
+#endif
+
 #ifdef GRELHA_AVX512
 namespace avx512 {
 extern const VariantLoops kLoops;
@@ -68,6 +77,9 @@ constexpr const Variant* kVariants[] = {
 #endif
 #ifdef GRELHA_AVX512
     &kAvx512,
+#endif
+#ifdef GRELHA_NEON
+    &kNeon,
 #endif
 };
 }  // namespace

@@ -1,0 +1,2 @@
+#define GRELHA_ISA neon
+#include "kernel/isa/variant.hpp"
