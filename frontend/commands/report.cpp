@@ -116,12 +116,11 @@ Json error_json(const RefineOptions& asked, const ErrorStats& e) {
           {"seconds", asked.seconds},
           {"rmse", e.rmse},
           {"rmse_bound", e.rmse_bound},
-          {"audited", e.checked},
           {"audits", e.checks},
           {"audit_samples", e.check_samples},
           {"rounds", e.rounds},
           {"samples", e.samples},
-          {"met_at", e.met_at},
+          {"met", e.met},
           {"least", e.least},
           {"most", e.most}};
 }
@@ -214,27 +213,18 @@ std::string rounded_up(double value) {
   return print("%.2g", std::strtod(print("%de%d", ++tens, power).c_str(), nullptr));
 }
 
-/// Says how many samples a picture by --error took after it met its error.
-std::string end_text(const RefineOptions& asked, const ErrorStats& e) {
-  if (asked.error <= 0 || e.met_at == 0 || e.met_at == e.samples)
-    return "";
-  return print(", %.0f %% of them for pixels with wide intervals",
-               100 * (1 - double(e.met_at) / double(e.samples)));
-}
-
-std::string error_text(const RefineOptions& asked, const ErrorStats& e, const RunReport& report) {
+std::string error_text(const ErrorStats& e, const RunReport& report) {
   std::string text =
       print("; RMSE about %.2g, at most ", e.rmse) + rounded_up(e.rmse_bound) + " (95 %)";
-  if (e.checked > 0)
-    text += print(", audited %.2g by %.1f %% more samples",
-                  e.checked,
+  if (e.checks > 0)
+    text += print(", audited by %.1f %% more samples",
                   100 * double(e.check_samples) / double(e.samples));
   text += print("; %llu samples, %.1f a pixel, %u to %u",
                 static_cast<unsigned long long>(e.samples),
                 double(e.samples) / report.width / report.height,
                 e.least,
                 e.most);
-  return text + end_text(asked, e);
+  return text;
 }
 
 }  // namespace
@@ -242,7 +232,7 @@ std::string error_text(const RefineOptions& asked, const ErrorStats& e, const Ru
 std::string unmet_error(const RenderCommand& command, const RunReport& report) {
   const ErrorStats& e = report.render.error;
   const double asked = command.render.refine.error;
-  if (asked <= 0 || e.met_at > 0)
+  if (asked <= 0 || e.met)
     return "";
   return command.scene +
          print(": warning: --error %g is not met: RMSE about %.2g, at most ", asked, e.rmse) +
@@ -344,7 +334,7 @@ std::string report_line_of(const RenderCommand& command, const RunReport& report
       print("load %.2f, build %.2f, render %.2f, write %.2f s", s.load, s.build, s.render, s.write);
   const double speed = s.render > 0 ? rays / s.render / 1e6 : 0;
   const ErrorStats& e = report.render.error;
-  const std::string error = e.samples == 0 ? "" : error_text(command.render.refine, e, report);
+  const std::string error = e.samples == 0 ? "" : error_text(e, report);
   return printable_line(name_of_file(command.image)) + ": " +
          primitives_text(report.spheres, report.triangles, report.cones, report.planes) + "; " +
          grids_text(report.grids) + "; " + print("%.3f Mrays in ", rays / 1e6) + times +

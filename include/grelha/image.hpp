@@ -25,9 +25,6 @@ struct SampleMaps {
   std::vector<std::uint32_t> samples;  ///< [height * width] samples taken of each pixel
   /// [height * width] estimated standard error, root mean square of the channels
   std::vector<float> error;
-  /// [height * width] width of the 95 % interval, which allows for details that the samples may
-  /// have missed
-  std::vector<float> width;
 };
 
 }  // namespace grelha

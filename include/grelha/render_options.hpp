@@ -48,8 +48,7 @@ struct SampleOptions {
 /// Adaptive sampling: samples go to the pixels where they reduce the error most, instead of
 /// SampleOptions::samples to each. The sampler must be kSobol or kRandom.
 struct RefineOptions {
-  /// > 0: samples until the RMSE is at most this, at 95 % confidence. In 99.9 % of the pixels the
-  /// 95 % interval is at most 8 times as wide as this. Display units, 0 to 1
+  /// > 0: samples until the RMSE is at most this, at 95 % confidence. Display units, 0 to 1
   double error = 0;
   /// > 0: samples for this many seconds. The result depends on the machine; to repeat it set
   /// `samples` to ErrorStats::samples of the run

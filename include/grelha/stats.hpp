@@ -70,15 +70,12 @@ struct ErrorStats {
   /// estimated RMSE of all pixels and channels against the converged picture
   double rmse = 0;
   double rmse_bound = 0;  ///< upper bound of rmse at 95 % confidence
-  /// rmse of about 5 % of the pixels, estimated from a second, independent set of samples; 0: no
-  /// such set was taken
-  double checked = 0;
-  int checks = 0;                   ///< number of such sets, each of other pixels
+  bool met = false;       ///< the requested RMSE is reached
+  /// number of second, independent sets of samples of some pixels, each of other pixels; their
+  /// differences from the picture correct rmse
+  int checks = 0;
   std::uint64_t check_samples = 0;  ///< samples of these sets; the picture does not contain them
   std::uint64_t samples = 0;        ///< of all pixels; see RefineOptions::seconds
-  /// samples when the requested RMSE was reached; later ones went to pixels with wide intervals. 0:
-  /// not reached, or not requested
-  std::uint64_t met_at = 0;
   std::uint32_t least = 0, most = 0;  ///< samples of a single pixel
   int rounds = 0;                     ///< of doubling the samples
 };

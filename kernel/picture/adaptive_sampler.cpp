@@ -63,19 +63,19 @@ class AdaptiveSampler {
     reserve_to_fill(r_.wanted, order_.size());
     if (r_.wanted.empty() && !r_.finished)
       r_.wanted = order_;
-    bool judged = false;
+    errors_.estimate();
     while (!r_.finished && (!progress_.stopped() || resume())) {
-      judged = take_round();
-      if (!judged)
+      if (!take_round())
         continue;
       if (r_.rounds++ == 0)
         trace_targets();
-      choose_next();
-      if (options_.refine.error > 0 && is_check_due() && !errors_stand())
-        choose_next();
+      errors_.estimate();
+      if (options_.refine.error > 0 && is_check_due()) {
+        check();
+        errors_.estimate();
+      }
+      r_.finished = !choose_round(r_, errors_, options_.refine, order_, {samples_, seconds()});
     }
-    if (!judged)
-      errors_.estimate_block();
     if (r_.finished)
       r_.share = 1;
     r_.seconds = seconds();
@@ -87,17 +87,11 @@ class AdaptiveSampler {
   void report(SampleMaps* maps) const {
     const BlockErrors::Totals totals = errors_.totals();
     ErrorStats& e = stats_.error;
-    // what pixels claim and the last check, which is as likely above the truth as below
-    const bool by_check = r_.met && !(totals.bound <= options_.refine.error);
-    e.rmse = by_check ? std::sqrt(r_.checked_mse) : totals.rmse;
-    e.rmse_bound = stated(by_check ? std::sqrt(r_.checked_bound)
-                                   : std::max(totals.bound, std::sqrt(r_.checked_mse)));
-    e.checked = std::sqrt(r_.checked_mse);
+    e.rmse = totals.rmse;
+    e.rmse_bound = stated(totals.bound);
+    e.met = options_.refine.error > 0 && totals.judged(r_.checks > 0) <= options_.refine.error;
     e.checks = r_.checks;
     e.check_samples = r_.check_samples;
-    // the last samples may have met it, and the last check may deny it
-    const bool met = e.rmse_bound <= options_.refine.error;
-    e.met_at = !met ? 0 : r_.met_at > 0 ? r_.met_at : samples_;
     e.rounds = r_.rounds;
     e.samples = samples_;
     e.least = kMostSamples;
@@ -125,9 +119,8 @@ class AdaptiveSampler {
   }
 
   void fill(SampleMaps& maps) const {
-    maps.samples.resize(r_.box.size());
-    maps.error.resize(r_.box.size());
-    maps.width = errors_.widths();
+    maps.samples.resize(static_cast<std::size_t>(r_.width) * static_cast<std::size_t>(r_.height));
+    maps.error.resize(maps.samples.size());
     for (std::size_t b = 0; b < blocks_.count(); ++b)
       blocks_.each_pixel(b, [&](std::size_t p) {
         maps.samples[p] = sample_count(r_, b);
@@ -135,44 +128,22 @@ class AdaptiveSampler {
       });
   }
 
-  void choose_next() {
-    errors_.estimate_block();
-    r_.finished = !choose_round(r_, errors_, options_.refine, order_, {samples_, seconds()});
-  }
-
-  /// True when the error asked for seems to be met. After a check that did not confirm this, also
-  /// each time the number of samples has grown by half.
+  /// True when the error asked for seems to be met, and no check says so that is recent.
   bool is_check_due() const {
-    if (r_.last || r_.checks == kMaxChecks)
-      return false;
-    return r_.checks == 0 ? r_.finished
-                          : r_.finished || static_cast<double>(samples_) >=
-                                               kCheckGrowth * static_cast<double>(r_.checked_at);
+    const bool recent = r_.checks > 0 && static_cast<double>(samples_) <
+                                             kCheckGrowth * static_cast<double>(r_.checked_at);
+    return r_.checks < kMaxChecks && !recent &&
+           errors_.totals().judged(r_.checks > 0) <= options_.refine.error;
   }
 
-  /// Checks the picture's error. Returns true if the check agrees with the variances that blocks
-  /// claim, or shows that the error is met. Its findings count from now on.
-  bool errors_stand() {
+  /// Checks the picture's error. What earlier checks found counts for half.
+  void check() {
     const RayCounts before = stats_.rays;
-    const ErrorCheck found = check_error(world_, setup_, options_, errors_, r_, stats_);
+    r_.checked = .5 * r_.checked + check_error(world_, setup_, options_, errors_, r_, stats_);
+    ++r_.checks;
+    r_.checked_at = samples_;
     r_.rays += stats_.rays.total() - before.total();
     r_.check_samples += stats_.rays.primary - before.primary;
-    const CheckedPixels& others = found.others;
-    const CheckedPixels& agreeing = found.agreeing;
-    const bool first = r_.checks++ == 0;
-    const bool worse = others.exceeds_error() || agreeing.exceeds_error();
-    r_.checked_mse = found.mean_square();
-    r_.checked_at = samples_;
-    r_.checked_bound = found.bound();
-    const double error = options_.refine.error;
-    r_.met = r_.checked_bound <= error * error;
-    // the blocks claim so as well, so the first check's mean suffices in place of its bound
-    if (r_.met || (first && (!worse || r_.checked_mse <= error * error)))
-      return r_.finished;
-    r_.worse = others.error_ratio(r_.worse);
-    if (agreeing.count > 0)
-      r_.least_by_sample = agreeing.by_sample / agreeing.count;
-    return false;
   }
 
   bool resume() {

@@ -29,7 +29,7 @@ BlockErrors::BlockErrors(const Refinement& r, int threads)
   const std::size_t count = blocks_.count();
   resize_to_fill(version_, count);
   resize_to_fill(sums_, count);
-  for (std::vector<float>* const of : {&variance_, &certainty_, &gain_})
+  for (std::vector<float>* const of : {&claim_, &variance_, &certainty_, &gain_})
     resize_to_fill(*of, count);
   int columns = blocks_.columns, rows = blocks_.rows;
   for (Level& level : levels_) {
@@ -74,7 +74,10 @@ void BlockErrors::measure_pixel(std::size_t p, int log, Sums& sums) const {
 
 void BlockErrors::measure(std::size_t b) {
   Sums sums;
-  blocks_.each_pixel(b, [&](std::size_t p) { measure_pixel(p, r_.log[b], sums); });
+  blocks_.each_pixel(b, [&](std::size_t p) {
+    measure_pixel(p, r_.log[b], sums);
+    sums.has_box = sums.has_box || r_.box[p] != 0;
+  });
   sums_[b] = sums;
   version_[b] = r_.log[b];
   levels_[0].cells[b] = sums.has_few_hits() ? sums : Sums{};
@@ -175,16 +178,19 @@ void BlockErrors::estimate_block(std::size_t b) {
       mine.has_few_hits() ? rare_variance(b, certainty) : own_variance(mine.levels) / mine.pixels;
   // k hits in N samples have chances of Beta(k + 1, N - k + 1), whose mean is that of one hit more
   if (certainty > 0)
-    v *= static_cast<float>(r_.worse) * (1 + 1 / certainty);
+    v *= 1 + 1 / certainty;
+  claim_[b] = v;
+  const double ratio = r_.checked.ratio();
+  v *= static_cast<float>(mine.has_box ? std::max(1., ratio) : ratio);
   if (agrees(b))
-    v = std::max(v, static_cast<float>(r_.least_by_sample) / samples);
+    v = std::max(v, static_cast<float>(r_.checked.by_sample()) / samples);
   v = std::min(v + r_.missed[b], 1.f);  // of displayed values, 0 to 1
   variance_[b] = v;
   certainty_[b] = certainty;
   gain_[b] = gain_of(b, v);
 }
 
-void BlockErrors::estimate_block() {
+void BlockErrors::estimate() {
 #pragma omp parallel for num_threads(threads_) schedule(static)
   for (std::size_t b = 0; b < blocks_.count(); ++b)
     if (version_[b] != r_.log[b])
@@ -196,32 +202,34 @@ void BlockErrors::estimate_block() {
     estimate_block(b);
 }
 
-std::vector<float> BlockErrors::widths() const {
-  std::vector<float> widths;
-  resize_to_fill(widths, r_.box.size());
-#pragma omp parallel for num_threads(threads_) schedule(static)
-  for (std::size_t b = 0; b < blocks_.count(); ++b)
-    blocks_.each_pixel(b, [&](std::size_t p) {
-      Sums sums;
-      measure_pixel(p, r_.log[b], sums);
-      // few differences tell little: half of it is what the block says
-      const float mine = static_cast<float>(r_.worse) * own_variance(sums.levels);
-      widths[p] = 2 * kNormal * std::sqrt(.5f * (mine + variance_[b]));
-    });
-  return widths;
-}
-
 BlockErrors::Totals BlockErrors::totals() const {
-  double sum = 0;
-  double spread = 0;
+  double sum = 0, spread = 0, claimed = 0, agreeing = 0, n = 0;
   for (std::size_t b = 0; b < variance_.size(); ++b) {
-    const double v = static_cast<double>(variance_[b]) * static_cast<double>(sums_[b].pixels);
+    const auto pixels = static_cast<double>(sums_[b].pixels);
+    const double v = static_cast<double>(variance_[b]) * pixels;
+    n += pixels;
     sum += v;
     spread += v * v / std::max(1., static_cast<double>(certainty_[b]));
+    if (agrees(b))
+      agreeing += pixels / sample_count(r_, b);
+    else
+      claimed += static_cast<double>(claim_[b]) * pixels;
   }
-  const double n = static_cast<double>(r_.box.size());
-  const double bound = kStoppedLow * sum + kNormalOneSided * std::sqrt(spread);
+  if (r_.checks > 0)
+    spread = std::max(spread, check_spread(claimed, agreeing));
+  const double bound = sum + kBoundSpread * std::sqrt(spread);
   return {sum, std::sqrt(bound / n), std::sqrt(sum / n)};
+}
+
+/// Variance of the sum that checks make of what blocks claim: that of a ratio estimator (Cochran
+/// 1977, 6.4), and that of the mean where samples agree.
+double BlockErrors::check_spread(double claimed, double agreeing) const {
+  const CheckSums& c = r_.checked;
+  const double ratio = c.ratio();
+  const double off = std::max(0., c.yy + ratio * (ratio * c.xx - 2 * c.xy));
+  const double of_others = c.x > 0 ? off * claimed / c.x * claimed / c.x : 0;
+  const double of_agreeing = c.count > 0 ? c.nyny * agreeing / c.count * agreeing / c.count : 0;
+  return of_others + of_agreeing;
 }
 
 }  // namespace grelha

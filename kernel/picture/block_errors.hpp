@@ -15,23 +15,26 @@ class BlockErrors {
 
   /// Computes the variance of every block from the differences its pixels hold. If few pixels
   /// differ, surrounding blocks that may show the same surface tell how often samples hit.
-  void estimate_block();
+  void estimate();
 
   struct Totals {
     double sum, bound;  ///< sum of the variances of all pixels; bound of the RMSE at 95 %
                         ///< confidence
     double rmse;
+    /// What is held against the error asked for: until a check tells more, blocks are taken to
+    /// claim too much.
+    double judged(bool checked) const { return checked ? bound : rmse / kOverclaimed; }
   };
   Totals totals() const;
 
-  /// Variance of a pixel of the block, mean over channels.
+  /// Variance of a pixel of the block, mean over channels, by its own samples.
+  float claim(std::size_t b) const { return claim_[b]; }
+  /// The same as checks of the picture correct it.
   float variance(std::size_t b) const { return variance_[b]; }
   /// [blocks] Variance that each ray removes if the block's samples are doubled.
   const std::vector<float>& gains_per_ray() const { return gain_; }
   /// True if no sample of the block's pixels differed.
   bool agrees(std::size_t b) const;
-  /// [pixels] Widths of 95 % intervals.
-  std::vector<float> widths() const;
 
  private:
   /// Sums over the pixels of a block.
@@ -41,6 +44,7 @@ class BlockErrors {
     float drop = 0, level = 0;    ///< V(n) / V(n/2) is drop / level
     float colour[3] = {};         ///< displayed values
     float pixels = 0, samples = 0;
+    bool has_box = false;  ///< few pixels hold its errors, and checks seldom see them
 
     void operator+=(const Sums& o);
     /// Number of pixels with equal differences that would be as certain.
@@ -66,6 +70,7 @@ class BlockErrors {
   float rare_variance(std::size_t b, float& certainty) const;
   float gain_of(std::size_t b, float variance) const;
   void estimate_block(std::size_t b);
+  double check_spread(double claimed, double agreeing) const;
 
   const Refinement& r_;
   const Blocks blocks_;
@@ -73,7 +78,8 @@ class BlockErrors {
   std::vector<std::uint8_t> version_;  ///< [blocks] Refinement::log when `sums_` was set
   std::vector<Sums> sums_;             ///< [blocks]
   Level levels_[kLevels];
-  std::vector<float> variance_, certainty_, gain_;  ///< [blocks] certainty_: of how many hits
+  std::vector<float> claim_, variance_, certainty_,
+      gain_;  ///< [blocks] certainty_: of how many hits
 };
 
 }  // namespace grelha

@@ -14,12 +14,10 @@
 namespace grelha {
 namespace {
 
-/// Share of the pixels that a check samples again: so few that it costs no more than that, and
-/// enough to notice one wrong pixel in a thousand of a picture of 192 x 192 (measured: with .01
-/// runs stopped above the error asked for three times as often).
-constexpr double kCheckedShare = .05;
-constexpr double kMinChecked = 1024;  ///< but of small pictures
-constexpr double kMaxChecked = 1. / 8;
+/// Pixels that a check samples again: so many tell the error to a few per cent, but of small
+/// pictures no more than an eighth, and of large ones no more than a thirtieth.
+constexpr double kMinChecked = 2048, kFewChecked = 64;
+constexpr double kMostShare = 1. / 8, kMostOfLarge = 1. / 32;
 /// Blocks that claim most are checked for themselves: few could hold most of an error.
 constexpr std::size_t kWorstChecked = 16;
 constexpr std::uint32_t kOtherSeed = 0x5BD1E995u;
@@ -51,12 +49,17 @@ std::vector<std::uint32_t> worst_blocks(const BlockErrors& errors, std::size_t c
   return blocks;
 }
 
-/// Share of the pixels to check for an error asked for. If all m checked pixels are right, 3 / m of
-/// all pixels may be off, each by no more than 1.
-double share_for(double error, std::size_t pixels) {
-  const double count = static_cast<double>(pixels);
-  return std::min(std::max(kCheckedShare, std::min(kMaxChecked, kMinChecked / count)),
-                  6 / (error * error * count));
+double pixels_of(const Refinement& r) {
+  return static_cast<double>(r.sums.size() / 3);
+}
+
+/// Share of the pixels to check. If all m checked pixels are right, 3 / m of all pixels may be off,
+/// each by no more than 1: with m = 6 / E^2 that is half of E^2. Where the error lies far below E,
+/// fewer tell as much.
+double share_for(double error, double claimed, double pixels) {
+  const double claim = std::min(1., claimed / error);
+  const double enough = std::max(std::min(6 / (error * error), kMostOfLarge * pixels), kMinChecked);
+  return std::min(kMostShare, std::max(enough * claim * claim, kFewChecked) / pixels);
 }
 
 /// One pixel of each of the blocks that claim the largest variance, then others by a hash, block by
@@ -64,10 +67,9 @@ double share_for(double error, std::size_t pixels) {
 std::vector<CheckedPixel> checked_pixels(const Refinement& r,
                                          const BlockErrors& errors,
                                          std::uint32_t seed,
-                                         double error) {
+                                         double share) {
   const Blocks blocks = r.blocks();
   const std::vector<std::uint32_t> worst = worst_blocks(errors, blocks.count());
-  const double share = share_for(error, r.box.size());
   const std::uint32_t draw = scattered_bits(seed + static_cast<std::uint32_t>(r.checks));
   std::vector<CheckedPixel> checked;
   std::size_t others = 0, of_worst = 0;
@@ -90,7 +92,7 @@ std::vector<CheckedPixel> checked_pixels(const Refinement& r,
     others += a.stands_for == 0;
   for (CheckedPixel& a : checked)
     if (a.stands_for == 0)
-      a.stands_for = static_cast<double>(r.box.size() - of_worst) / static_cast<double>(others);
+      a.stands_for = (pixels_of(r) - static_cast<double>(of_worst)) / static_cast<double>(others);
   return checked;
 }
 
@@ -186,50 +188,34 @@ class Checker {
 
 }  // namespace
 
-bool CheckedPixels::exceeds_error() const {
-  return squared - claimed > std::sqrt(difference);
-}
-
-double CheckedPixels::error_ratio(double so_far) const {
-  if (!(count > 0) || !(claimed > 0))
-    return so_far;
-  return std::clamp(so_far * squared / claimed, 1., kMaxErrorRatio);
-}
-
-void CheckedPixels::add(double half_square, double variance, double samples, double stands_for) {
-  const double excess = stands_for * (half_square - variance);
-  squared += stands_for * half_square;
-  by_sample += stands_for * half_square * samples;
-  claimed += stands_for * variance;
-  difference += excess * excess;
-  fourth += stands_for * half_square * (stands_for * half_square);
-  count += stands_for;
-}
-
-double ErrorCheck::bound() const {
-  const double spread = std::sqrt(agreeing.fourth + others.fourth);
-  return mean_square() + kNormalOneSided * spread / (agreeing.count + others.count);
-}
-
-ErrorCheck check_error(const World::Impl& world,
-                       const Setup& setup,
-                       const RenderOptions& options,
-                       const BlockErrors& errors,
-                       const Refinement& r,
-                       RenderStats& stats) {
-  std::vector<CheckedPixel> pixels =
-      checked_pixels(r, errors, setup.plan.seed, options.refine.error);
+CheckSums check_error(const World::Impl& world,
+                      const Setup& setup,
+                      const RenderOptions& options,
+                      const BlockErrors& errors,
+                      const Refinement& r,
+                      RenderStats& stats) {
+  const double share = share_for(options.refine.error, errors.totals().rmse, pixels_of(r));
+  std::vector<CheckedPixel> pixels = checked_pixels(r, errors, setup.plan.seed, share);
   const Checker checker(world, setup, options, r, stats);
   checker.sample(pixels);
-  ErrorCheck sum;
+  CheckSums sums;
   for (const CheckedPixel& a : pixels) {
-    CheckedPixels& of = errors.agrees(a.block) ? sum.agreeing : sum.others;
-    of.add(checker.half_square(a),
-           static_cast<double>(errors.variance(a.block)),
-           sample_count(r, a.block),
-           a.stands_for);
+    const double y = a.stands_for * checker.half_square(a);
+    if (errors.agrees(a.block)) {
+      const double ny = sample_count(r, a.block) * y;
+      sums.ny += ny;
+      sums.nyny += ny * ny;
+      sums.count += a.stands_for;
+      continue;
+    }
+    const double x = a.stands_for * static_cast<double>(errors.claim(a.block));
+    sums.y += y;
+    sums.x += x;
+    sums.yy += y * y;
+    sums.xy += x * y;
+    sums.xx += x * x;
   }
-  return sum;
+  return sums;
 }
 
 }  // namespace grelha

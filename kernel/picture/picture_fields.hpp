@@ -53,8 +53,7 @@ void visit_arrays(Archive& archive, State& a) {
 template <class Archive, class State>
 requires std::is_same_v<std::remove_const_t<State>, Refinement>
 void visit_numbers(Archive& archive, State& r) {
-  archive.numbers(
-      kKindOf<Refinement>, r.width, r.height, r.rounds, r.checks, r.last, r.met, r.finished);
+  archive.numbers(kKindOf<Refinement>, r.width, r.height, r.rounds, r.checks, r.last, r.finished);
 }
 
 template <class Archive, class State>
@@ -62,9 +61,8 @@ requires std::is_same_v<std::remove_const_t<State>, Refinement>
 void visit_arrays(Archive& archive, State& r) {
   const std::size_t pixels = pixels_of(r.width, r.height);
   archive.values(r.variance_drop, r.variance_level, r.round_drop, r.round_level);
-  archive.values(
-      r.worse, r.least_by_sample, r.checked_mse, r.checked_bound, r.checked_at, r.met_at);
-  archive.values(r.check_samples);
+  auto& c = r.checked;
+  archive.values(c.y, c.x, c.yy, c.xy, c.xx, c.ny, c.nyny, c.count, r.checked_at, r.check_samples);
   archive.values(r.seconds, r.share, r.rays, r.variance_ratio, r.gain_threshold);
   archive.list(r.log, r.blocks().count());
   archive.list(r.missed, r.blocks().count());

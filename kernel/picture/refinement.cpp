@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "kernel/picture/image_to_fill.hpp"
+#include "kernel/picture/tolerances.hpp"
 
 namespace grelha {
 namespace {
@@ -39,12 +40,12 @@ bool has_valid_numbers(const Refinement& r) {
   for (const double v : {r.variance_drop, r.variance_level, r.round_drop, r.round_level, r.seconds})
     if (!lies(v, 0.0, kMost))
       return false;
-  if (!lies(r.worse, 1.0, kMost) || !lies(r.least_by_sample, 0.0, kMost) ||
-      !lies(r.checked_mse, 0.0, kMost) || !lies(r.checked_bound, 0.0, kMost) ||
-      !lies(r.checks, 0, 1 << 20))
-    return false;
+  const CheckSums& c = r.checked;
+  for (const double v : {c.y, c.x, c.yy, c.xy, c.xx, c.ny, c.nyny, c.count})
+    if (!lies(v, 0.0, kMost))
+      return false;
   return lies(r.variance_ratio, .1f, .6f) && lies(r.gain_threshold, 0.f, .25f) &&
-         lies(r.share, 0.0, 1.0) && lies(r.rounds, 0, 1 << 20);
+         lies(r.share, 0.0, 1.0) && lies(r.rounds, 0, 1 << 20) && lies(r.checks, 0, 1 << 20);
 }
 
 std::size_t pixel_count(const Refinement& r) {
@@ -88,6 +89,32 @@ bool has_valid_arrays(const Refinement& r) {
 }
 
 }  // namespace
+
+double CheckSums::ratio() const {
+  return x > 0 ? std::clamp(y / x, kLeastErrorRatio, kMaxErrorRatio) : 1;
+}
+
+CheckSums operator*(double weight, const CheckSums& c) {
+  return {weight * c.y,
+          weight * c.x,
+          weight * c.yy,
+          weight * c.xy,
+          weight * c.xx,
+          weight * c.ny,
+          weight * c.nyny,
+          weight * c.count};
+}
+
+CheckSums operator+(const CheckSums& a, const CheckSums& b) {
+  return {a.y + b.y,
+          a.x + b.x,
+          a.yy + b.yy,
+          a.xy + b.xy,
+          a.xx + b.xx,
+          a.ny + b.ny,
+          a.nyny + b.nyny,
+          a.count + b.count};
+}
 
 Refinement make_refinement(const Camera& camera) {
   Refinement r;

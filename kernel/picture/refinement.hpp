@@ -21,6 +21,23 @@ static_assert(1 << kMostLog == kMostSamples);
 /// eighths in each pixel.
 inline constexpr int kFirstLog = 3;
 
+/// What checks of a picture's error found: sums over the pixels they sampled again, each times the
+/// number of pixels it stands for. Half the squared difference of two independent means of n
+/// samples is their squared error, without a model.
+struct CheckSums {
+  /// of blocks whose samples differ: squared errors y and claimed variances x, and their products
+  double y = 0, x = 0, yy = 0, xy = 0, xx = 0;
+  /// of blocks whose samples agree, which claim nothing: n y, its square, pixels
+  double ny = 0, nyny = 0, count = 0;
+
+  /// Factor of the variance over what blocks claim.
+  double ratio() const;
+  /// Variance of one sample where samples agree.
+  double by_sample() const { return count > 0 ? ny / count : 0; }
+};
+CheckSums operator*(double weight, const CheckSums& c);
+CheckSums operator+(const CheckSums& a, const CheckSums& b);
+
 /// All that is known of a picture between two pieces of its work.
 ///
 /// Every pixel starts with 2^kFirstLog samples; each round then doubles those of the blocks whose
@@ -46,15 +63,10 @@ struct Refinement {
   double variance_level = 0;
   double round_drop = 0, round_level = 0;  ///< the same of the round in work
   float variance_ratio = .4f;              ///< V(n) / V(n/2)
-  float gain_threshold = .25f;  ///< gain a ray that a block of the round in work had to promise
-  /// found by checks: variances are `worse` times what blocks claim, and at least least_by_sample /
-  /// samples where samples agree; mean square error found by the last check
-  double worse = 1, least_by_sample = 0, checked_mse = 0;
-  double checked_bound = 0;
-  int checks = 0;
-  bool met = false;                 ///< so the last check said
-  std::uint64_t checked_at = 0;     ///< samples there were then
-  std::uint64_t met_at = 0;         ///< samples there were when the error was met; 0: it is not
+  float gain_threshold = .25f;      ///< gain a ray that a block of the round in work had to promise
+  CheckSums checked;                ///< what checks found
+  int checks = 0;                   ///< of the picture's error
+  std::uint64_t checked_at = 0;     ///< samples there were at the last one
   std::uint64_t check_samples = 0;  ///< taken for checks alone
   int rounds = 0;                   ///< done
   bool last = false;                ///< no round follows the one in work

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <iterator>
 
 namespace grelha {
@@ -15,24 +14,12 @@ constexpr float kThresholdStep = .5f;
 /// (measured).
 constexpr std::size_t kBlocksAWanted = 32;
 constexpr float kLeastThreshold = 1e-20f;  ///< below it no block is worth a ray
-/// widest 95 % interval a pixel may have, in units of the error asked for, and the share of pixels
-/// that may have wider ones all the same; see RefineOptions::error
-constexpr double kWidestInterval = 8;
-constexpr double kShareOfWider = .001;
-constexpr double kMemory = .5;  ///< weight of the rounds before the last one
+constexpr double kMemory = .5;             ///< weight of the rounds before the last one
 
 using List = std::vector<std::uint32_t>;
 
 double new_samples(const Refinement& r, std::size_t block) {
   return static_cast<double>(next_count(r, block)) * static_cast<double>(r.blocks().pixels(block));
-}
-
-template <class Test>
-void request(Refinement& r, const List& order, const Test& test) {
-  r.wanted.clear();
-  for (const std::uint32_t b : order)
-    if (r.log[b] < kMostLog && test(b))
-      r.wanted.push_back(b);
 }
 
 /// A wanted block: what it promises, and its index among the wanted.
@@ -76,17 +63,8 @@ bool select_best(List& wanted, const BlockErrors& errors, const Take& take) {
   return true;
 }
 
-/// How far the sum of variances lies above the one that meets the error.
-double excess_of(const BlockErrors::Totals& totals, double error) {
-  return totals.sum * (1 - error * error / (totals.bound * totals.bound));
-}
-
-/// Selects no more of the round than the error takes.
-void select_for_error(Refinement& r,
-                      const BlockErrors& errors,
-                      const BlockErrors::Totals& totals,
-                      double error) {
-  const double excess = excess_of(totals, error);
+/// Selects no more of the round than takes `excess` off the sum of variances.
+void select_for_error(Refinement& r, const BlockErrors& errors, double excess) {
   const Blocks blocks = r.blocks();
   const auto drop_of = [&](std::size_t b) {
     return static_cast<double>(errors.variance(b) * (1 - r.variance_ratio)) *
@@ -106,17 +84,6 @@ void select_for_error(Refinement& r,
   });
 }
 
-/// Selects no more of the round than is to be sampled before the next error check.
-void select_for_check(Refinement& r, const BlockErrors& errors, const Spent& spent) {
-  double left =
-      kCheckGrowth * static_cast<double>(r.checked_at) - static_cast<double>(spent.samples);
-  select_best(r.wanted, errors, [&](std::uint32_t b) {
-    const bool taken = left > 0;
-    left -= new_samples(r, b);
-    return taken;
-  });
-}
-
 /// Selects what the seconds or samples asked for still buy: a round that does not fit is the last.
 void select_for_budget(Refinement& r,
                        const BlockErrors& errors,
@@ -133,14 +100,10 @@ void select_for_budget(Refinement& r,
 }
 
 /// Says how far the picture is.
-void report_share(Refinement& r,
-                  const BlockErrors::Totals& totals,
-                  const RefineOptions& asked,
-                  const Spent& spent) {
-  const bool met = totals.bound <= asked.error;
-  // the bound may rise at first
+void report_share(Refinement& r, double error, const RefineOptions& asked, const Spent& spent) {
+  // the error may rise at first
   if (asked.error > 0)
-    r.share = met ? 1 : std::max(r.share, asked.error / totals.bound);
+    r.share = error <= asked.error ? 1 : std::max(r.share, asked.error / error);
   if (asked.samples > 0)
     r.share =
         std::min(1.0, static_cast<double>(spent.samples) / static_cast<double>(asked.samples));
@@ -155,31 +118,9 @@ void request_by_gain(Refinement& r, const BlockErrors& errors, const List& order
     r.gain_threshold *= kThresholdStep;
   while (std::count_if(gains.begin(), gains.end(), gaining) <= least &&
          r.gain_threshold >= kLeastThreshold);
-  request(r, order, [&](std::size_t b) { return gaining(gains[b]); });
-}
-
-/// Wants the blocks with pixels whose intervals are too wide, except for the share of widest pixels
-/// that is allowed.
-void request_wide(Refinement& r, const BlockErrors& errors, const List& order, double error) {
   r.wanted.clear();
-  if (kWidestInterval * error >= 2 * static_cast<double>(kNormal))
-    return;  // no variance is above 1
-  const std::vector<float> widths = errors.widths();
-  const auto too_wide = [&](float width) { return width > kWidestInterval * error; };
-  std::vector<float> wide;
-  std::copy_if(widths.begin(), widths.end(), std::back_inserter(wide), too_wide);
-  const auto spared = static_cast<std::size_t>(kShareOfWider * static_cast<double>(widths.size()));
-  if (wide.size() <= spared)
-    return;
-  const auto last = wide.begin() + static_cast<std::ptrdiff_t>(spared);
-  std::nth_element(wide.begin(), last, wide.end(), std::greater<>());
-  const float most = *last;
-  const Blocks blocks = r.blocks();
-  request(r, order, [&](std::size_t b) {
-    bool any = false;
-    blocks.each_pixel(
-        b, [&](std::size_t p) { any = any || (too_wide(widths[p]) && widths[p] <= most); });
-    return any;
+  std::copy_if(order.begin(), order.end(), std::back_inserter(r.wanted), [&](std::uint32_t b) {
+    return r.log[b] < kMostLog && gaining(gains[b]);
   });
 }
 
@@ -193,19 +134,15 @@ bool choose_round(Refinement& r,
   if (r.last)
     return false;
   const BlockErrors::Totals totals = errors.totals();
-  const bool met = asked.error > 0 && (r.met || totals.bound <= asked.error);
-  report_share(r, totals, asked, spent);
-  r.met_at = !met ? 0 : r.met_at == 0 ? spent.samples : r.met_at;
-  if (met)
-    request_wide(r, errors, order, asked.error);
+  const double error = totals.judged(r.checks > 0);
+  report_share(r, error, asked, spent);
+  if (error <= asked.error)
+    return false;
+  request_by_gain(r, errors, order);
+  if (asked.error > 0)
+    select_for_error(r, errors, totals.sum * (1 - asked.error * asked.error / (error * error)));
   else
-    request_by_gain(r, errors, order);
-  if (asked.error > 0 && !met)
-    select_for_error(r, errors, totals, asked.error);
-  else if (asked.seconds > 0 || asked.samples > 0)
     select_for_budget(r, errors, asked, spent);
-  if (!met && r.checks > 0 && r.checks < kMaxChecks)
-    select_for_check(r, errors, spent);
   return !r.wanted.empty();
 }
 

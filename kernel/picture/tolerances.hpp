@@ -29,15 +29,9 @@ inline constexpr float kRareHits = .01f;
 /// errors than this: chance parts one pair in 370.
 inline constexpr float kAlike = 3;
 
-/// Blocks stop when their estimates happen to be low: the sum of all is by a tenth (measured).
-inline constexpr double kStoppedLow = 1.1;
-/// A bound that stopped a run is lower than the truth in one of eight cases, and by up to this
-/// factor in two of three such cases (measured: docs/error-suite.csv).
-inline constexpr double kBoundedLow = 1.15;
-/// 97.5 % point of the normal.
-inline constexpr float kNormal = 1.96f;
-/// 95 % point, of one side.
-inline constexpr double kNormalOneSided = 1.645;
+/// Standard errors between an estimate and its bound at 95 %: 1.645 of normal ones, but of few
+/// checked pixels the tails are longer (measured: docs/error-suite.csv).
+inline constexpr double kBoundSpread = 2.3;
 
 /// Share of its box that a disc covers, pi / 4.
 inline constexpr float kDiscInBox = .7853982f;
@@ -46,11 +40,17 @@ inline constexpr float kDiscInBox = .7853982f;
 /// n^2 if variances fall by .4 per doubling.
 inline constexpr float kAgreement = .005f;
 
-/// Times the samples at an error check: most samples at the next one (a choice). After a check
-/// found a larger error than blocks claim, their claims are rough.
-inline constexpr double kCheckGrowth = 1.5;
-/// Largest factor by which checks find a picture worse than claimed: few pixels tell (a choice).
-inline constexpr double kMaxErrorRatio = 16;
+/// Blocks claim more than is true by this factor of the RMSE in the median (measured): the first
+/// check comes when they claim so much.
+inline constexpr double kOverclaimed = 1.15;
+/// Times the samples at an error check: most samples without another one (a choice).
+inline constexpr double kCheckGrowth = 1.25;
+/// A bound that ended a run happens to be low: it is lower than the truth in one of eight cases,
+/// and by up to this factor in two of three such cases (measured: docs/error-suite.csv).
+inline constexpr double kBoundedLow = 1.15;
+/// Least and largest factor of variances over those claimed that checks may find: few pixels tell
+/// (a choice).
+inline constexpr double kLeastErrorRatio = .7, kMaxErrorRatio = 16;
 /// Most error checks of a picture.
 inline constexpr int kMaxChecks = 16;
 

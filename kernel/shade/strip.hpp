@@ -63,25 +63,29 @@ struct CameraRays {
   store_words(b.path + i, zero);
 }
 
-/// Moves half of the samples into boxes, where their pixels have any, so that those that lie in a
-/// box weigh as much less as they are more. Returns the weights.
+/// Moves half of the samples into boxes, where their pixels have any, and the others out of them.
+/// Returns the weights: twice the area that each half stands for, so that even light stays even.
 [[gnu::always_inline]] inline VFloat move_into_boxes(const VUint& boxes, PairOf<VFloat>& in) {
   const VFloat half(.5f), one(1), two(2), part(1.f / 256);
   const auto side = [&](unsigned shift, std::uint32_t step) {
     return part * small_to_float((boxes >> shift & 255u) + step);
   };
   const VFloat x0 = side(0, 0), y0 = side(8, 0), x1 = side(16, 1), y1 = side(24, 1);
+  const VFloat width = x1 - x0, height = y1 - y0, area = width * height, rest = one - area;
   const VMask has = mask_of(VUint(boxes != 0u));
   const VMask aimed = in.u >= half;
   const VFloat u = select(aimed, two * in.u - one, two * in.u);
-  const PairOf<VFloat> moved{select(aimed, x0 + u * (x1 - x0), u),
-                             select(aimed, y0 + in.v * (y1 - y0), in.v)};
-  const VMask within =
-      mask_and(mask_and(moved.u >= x0, moved.u < x1), mask_and(moved.v >= y0, moved.v < y1));
-  const VFloat area = (x1 - x0) * (y1 - y0);
-  const VFloat weight = select(mask_or(aimed, within), two * area / (area + one), two);
+  // left of the box, above and below it, right of it
+  const VFloat along = u * rest, open = one - height;
+  const VFloat beside = x0 + (along - x0) / max(open, part);
+  const VMask left = along < x0, right = along >= x0 + width * open;
+  const VFloat below = in.v * open;
+  const VFloat column = select(below < y0, below, below + height);
+  const PairOf<VFloat> moved{
+      select(aimed, x0 + u * width, select(left, along, select(right, along + area, beside))),
+      select(aimed, y0 + in.v * height, select(mask_or(left, right), in.v, column))};
   in = {select(has, moved.u, in.u), select(has, moved.v, in.v)};
-  return select(has, weight, one);
+  return select(has, two * select(aimed, area, rest), one);
 }
 
 /// Makes camera rays [0, count) of the batch. Each goes through a position in the picture, which

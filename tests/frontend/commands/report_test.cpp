@@ -289,29 +289,30 @@ TEST(Summary, SaysOfAnErrorWhetherItIsMet) {
   RenderCommand command;
   command.image = "x.png";
   command.render.refine.error = .01;
-  const auto said = [&](double bound, std::uint64_t met_at) {
+  const auto said = [&](double bound, int checks) {
     RunReport report;
     report.width = report.height = 10;
     ErrorStats& e = report.render.error;
     e.samples = 1000;
     e.rmse = .007;
     e.rmse_bound = bound;
-    e.met_at = met_at;
+    e.checks = checks;
+    e.check_samples = 50;
     e.least = 4;
     e.most = 128;
     const std::string line = report_line_of(command, report);
     return line.substr(line.find("; RMSE"));
   };
   const std::string samples = " (95 %); 1000 samples, 10.0 a pixel, 4 to 128";
-  EXPECT_EQ(said(.01, 1000), "; RMSE about 0.007, at most 0.01" + samples + '\n');
+  EXPECT_EQ(said(.01, 0), "; RMSE about 0.007, at most 0.01" + samples + '\n');
   EXPECT_EQ(said(.01001, 0), "; RMSE about 0.007, at most 0.011" + samples + '\n');
-  EXPECT_EQ(said(.00999, 500),
-            "; RMSE about 0.007, at most 0.01" + samples +
-                ", 50 % of them for pixels with wide intervals\n");
+  EXPECT_EQ(said(.00999, 1),
+            "; RMSE about 0.007, at most 0.01 (95 %), audited by 5.0 % more samples" +
+                samples.substr(samples.find(';')) + '\n');
   command.render.refine.error = .1;
-  EXPECT_EQ(said(.0991, 1000), "; RMSE about 0.007, at most 0.1" + samples + '\n');
-  EXPECT_EQ(said(1e-8, 1000), "; RMSE about 0.007, at most 1e-08" + samples + '\n');
-  EXPECT_EQ(said(0, 1000), "; RMSE about 0.007, at most 0" + samples + '\n');
+  EXPECT_EQ(said(.0991, 0), "; RMSE about 0.007, at most 0.1" + samples + '\n');
+  EXPECT_EQ(said(1e-8, 0), "; RMSE about 0.007, at most 1e-08" + samples + '\n');
+  EXPECT_EQ(said(0, 0), "; RMSE about 0.007, at most 0" + samples + '\n');
 }
 
 }  // namespace

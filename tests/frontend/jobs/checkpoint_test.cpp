@@ -196,6 +196,8 @@ TEST(Checkpoint, OfImpossibleNumbersIsRefused) {
   EXPECT_TRUE(refused([](Refinement& r) { r.box[4] = 0x2F403010; })) << "its top is below it";
   EXPECT_FALSE(refused([](Refinement& r) { r.box[4] = 0x40303010; }));
   EXPECT_TRUE(refused([](Refinement& r) { r.box.pop_back(); }));
+  EXPECT_TRUE(refused([](Refinement& r) { r.checked.y = -1; }));
+  EXPECT_TRUE(refused([&](Refinement& r) { r.checked.count = std::nan(""); }));
 }
 
 TEST(Checkpoint, OfBrokenGzipDataIsDamaged) {

@@ -28,7 +28,7 @@ Refinement picture(int width, int height, std::uint8_t log) {
 
 BlockErrors judged(const Refinement& r) {
   BlockErrors errors(r, 1);
-  errors.estimate_block();
+  errors.estimate();
   return errors;
 }
 
@@ -96,21 +96,6 @@ TEST(BlockErrors, BoundTheErrorOfNineteenPicturesInTwenty) {
   EXPECT_GE(held, .95 * kPictures);
 }
 
-/// A pixel's interval is wide enough for 95 % of normal errors of its variance.
-TEST(BlockErrors, MakeIntervalsOfNineteenInTwenty) {
-  constexpr int kSide = 64;
-  constexpr double kVariance = 1e-4;
-  Random random(1);
-  Refinement r = picture(kSide, kSide, kFirstLog + 2);
-  for (std::size_t p = 0; p < kSide * kSide; ++p)
-    draw(r, p, kVariance, random);
-  int inside = 0;
-  for (const float width : judged(r).widths())
-    inside += std::abs(std::sqrt(kVariance) * normal(random)) <= static_cast<double>(width) / 2;
-  EXPECT_GE(inside, .94 * kSide * kSide);
-  EXPECT_LE(inside, .97 * kSide * kSide);
-}
-
 /// One sample that differs by .1 in one pixel is where a block's samples begin to disagree.
 TEST(BlockErrors, SeeASampleThatDiffersByATenth) {
   const auto agrees = [](float difference) {
@@ -127,7 +112,7 @@ TEST(BlockErrors, SeeASampleThatDiffersByATenth) {
 /// Light that one sample in `every` hits, on a black picture: hits by chance.
 Refinement rarely_lit(std::uint32_t every, std::uint8_t log, Random& random, int side = 96) {
   Refinement r = picture(side, side, log);
-  for (std::size_t p = 0; p < r.box.size(); ++p)
+  for (std::size_t p = 0; p < r.sums.size() / 3; ++p)
     if (random.below(every) < 1u << log)
       hit(r, p, 1);
   return r;
@@ -187,19 +172,23 @@ TEST(BlockErrors, CountNothingBeyondWhite) {
   EXPECT_GT(judged(r).variance(0), 1e-3f);
 }
 
-/// Small things that may be missed, and what checks found, add to what samples say.
+/// What checks found corrects what samples say.
 TEST(BlockErrors, AddWhatIsFoundBesideSamples) {
   Random random(1);
   Refinement r = picture(8, 4, kFirstLog);
   r.blocks().each_pixel(0, [&](std::size_t p) { draw(r, p, 1e-4, random); });
   const float alone = judged(r).variance(0);
-  r.worse = 3;
+  r.checked.y = 3;
+  r.checked.x = 1;
   EXPECT_NEAR(judged(r).variance(0) / alone, 3, 1e-5);
-  r.missed[1] = .01f;
+  EXPECT_EQ(judged(r).claim(0), alone);
+  r.missed[1] = .002f;
+  EXPECT_FLOAT_EQ(judged(r).variance(1), .002f);
+  r.missed[1] = 0;
+  r.checked.ny = 8;
+  r.checked.count = 100;
   EXPECT_FLOAT_EQ(judged(r).variance(1), .01f);
-  r.least_by_sample = 8e-2;
-  EXPECT_FLOAT_EQ(judged(r).variance(1), .02f);
-  EXPECT_FLOAT_EQ(judged(r).gains_per_ray()[1], .02f * .6f / 8);
+  EXPECT_FLOAT_EQ(judged(r).gains_per_ray()[1], .01f * .6f / 8);
   r.log[1] = kMostLog;
   EXPECT_EQ(judged(r).gains_per_ray()[1], 0) << "it can have no more";
 }
@@ -214,11 +203,10 @@ TEST(BlockErrors, FollowThePicture) {
     r.log[b] = static_cast<std::uint8_t>(std::min(r.log[b] + 1, kMostLog));
     r.variance_ratio = static_cast<float>(random.in(.2, .5));
     r.blocks().each_pixel(b, [&](std::size_t p) { draw(r, p, random.log_in(1e-6, 1e-2), random); });
-    errors.estimate_block();
+    errors.estimate();
     const BlockErrors anew = judged(r);
     for (std::size_t i = 0; i < r.log.size(); ++i)
       ASSERT_EQ(errors.variance(i), anew.variance(i)) << round;
-    ASSERT_EQ(errors.widths(), anew.widths()) << round;
     ASSERT_EQ(errors.gains_per_ray(), anew.gains_per_ray()) << round;
   }
 }

@@ -110,18 +110,10 @@ std::size_t differing(const Image& a, const Image& b) {
   return n;
 }
 
-/// Share of the pixels whose intervals are wider.
-double wider_share(const SampleMaps& maps, double than) {
-  const auto wider = std::count_if(
-      maps.width.begin(), maps.width.end(), [&](float w) { return static_cast<double>(w) > than; });
-  return static_cast<double>(wider) / static_cast<double>(maps.width.size());
-}
-
 /// 3 x 60 x 60 pixels. The reference has at least 8 times the samples of the hardest pixel, so it
 /// adds under 6 % to an error that falls with their root; coverage moves by less than .005.
-TEST(Refinement, MeetsItsErrorAndItsIntervalsHold) {
+TEST(Refinement, MeetsItsError) {
   constexpr double kAsked = .02;
-  std::size_t pixels = 0, inside = 0;
   for (const Case& c : cases(60)) {
     const Outcome got = refined(c, to_error(kAsked));
     const Image truth = converged(c, 4096);
@@ -129,23 +121,12 @@ TEST(Refinement, MeetsItsErrorAndItsIntervalsHold) {
     const double error = rmse(got.image, truth);
     const ErrorStats& e = got.stats.error;
     EXPECT_LE(error, kAsked) << c.name;
-    EXPECT_GE(error, kAsked / 3) << c.name;
+    EXPECT_GE(error, kAsked / 2) << c.name;
     EXPECT_LE(e.rmse_bound, kAsked) << c.name;
-    EXPECT_GT(e.met_at, 0u) << c.name;
-    EXPECT_LE(e.met_at, e.samples) << c.name;
-    EXPECT_LE(wider_share(got.maps, 8 * kAsked), .001) << c.name;
+    EXPECT_TRUE(e.met) << c.name;
     EXPECT_GE(e.rmse / error, .8) << c.name;
-    EXPECT_LE(e.rmse / error, 1.5) << c.name << ": one hit more is counted than was seen";
-    for (std::size_t p = 0; p < got.maps.width.size(); ++p) {
-      ++pixels;
-      inside +=
-          pixel_error(got.image, truth, p) <= .5 * static_cast<double>(got.maps.width[p]) + 1e-6;
-    }
+    EXPECT_LE(e.rmse / error, 1.25) << c.name;
   }
-  EXPECT_GE(pixels, 10000u);
-  const double coverage = static_cast<double>(inside) / static_cast<double>(pixels);
-  EXPECT_GE(coverage, .93);
-  EXPECT_LE(coverage, .99);
 }
 
 /// 4096 discs of a tenth of a pixel, contrast 1, each inside one pixel of 512 x 512: without them
@@ -158,20 +139,6 @@ TEST(Refinement, FindsDiscsOfATenthOfAPixel) {
     seen += got.image.rgb[p] > 0 || got.image.rgb[p + 1] > 0 || got.image.rgb[p + 2] > 0;
   EXPECT_GE(seen, 4096 * 99 / 100);
   EXPECT_LE(seen, 4096);
-}
-
-/// A pixel between thin spokes whose first samples all hit spokes: half of it is background. An
-/// interval of 8 E at 95 % is four standard errors wide; eight are allowed for the worst of 9216
-/// pixels, whose errors have longer tails than the normal (measured: 4.6). A pixel taken for plain
-/// was off by .52.
-TEST(Refinement, IsNotFooledBySamplesThatAgree) {
-  Case c{"star", generated("star", 36), {}};
-  c.file.camera.width = c.file.camera.height = 96;
-  const Outcome got = refined(c, to_error(.01));
-  const Image truth = converged(c, 4096);
-  for (std::size_t p = 0; p < 96 * 96; ++p)
-    EXPECT_LE(pixel_error(got.image, truth, p), 16 * .01) << p % 96 << ' ' << p / 96;
-  EXPECT_LE(rmse(got.image, truth), .01);
 }
 
 /// The minimum number of samples suffices if nothing varies and no object can be missed.
@@ -187,7 +154,7 @@ TEST(Refinement, SpendsNothingOnAFlatPicture) {
   const Outcome got = refined(c, to_error(1e-4));
   EXPECT_EQ(got.stats.error.most, 8u);
   EXPECT_EQ(got.stats.error.samples, 40u * 24 * 8);
-  EXPECT_LE(got.stats.rays.primary, 40u * 24 * 8 * 6 / 5) << "one in eight is audited";
+  EXPECT_LE(got.stats.rays.primary, 40u * 24 * 8 * 6 / 5) << "some are audited";
   EXPECT_EQ(got.stats.error.rmse, 0);
   for (std::size_t p = 0; p < 40 * 24; ++p)
     EXPECT_EQ(got.image.rgb[3 * p + 1], .5f);
@@ -335,7 +302,6 @@ TEST(Refinement, StoppedAnywhereGoesOnToTheSameBits) {
       EXPECT_EQ(differing(picture_so_far(kept), expected.image), 0u);
       EXPECT_EQ(got.maps.samples, expected.maps.samples);
       EXPECT_EQ(got.maps.error, expected.maps.error);
-      EXPECT_EQ(got.maps.width, expected.maps.width);
       EXPECT_EQ(got.stats.error.samples, expected.stats.error.samples);
       EXPECT_EQ(got.stats.error.rounds, expected.stats.error.rounds);
       EXPECT_EQ(rays.total(), expected.stats.rays.total()) << "nothing twice";

@@ -117,19 +117,22 @@ PixelBox random_box(Random& random) {
   return unpacked(packed(box));
 }
 
-/// The half of the 2^16 samples that is not sent to the box is a net of 2^15 points. The number of
-/// its points in a box differs from the expected number by at most 4 (15 / 2 + 3 / 2)
-/// (Niederreiter, 1987, for a box at the corner; any box is a combination of four such boxes). Each
-/// weighs 2 A / (1 + A) in the box, and 2 outside.
+/// Each half of the 2^16 samples is a net of 2^15 points. The number of its points in a box differs
+/// from the expected number by at most 4 (15 / 2 + 3 / 2) (Niederreiter, 1987, for a box at the
+/// corner; any box is a combination of four such boxes). What is seen beside the pixel's box is
+/// three boxes of the net at most. Each point weighs twice the area that its half stands for.
 TEST_P(PixelBoxes, MoveSamplesWithoutBias) {
   constexpr double kOff = 36;
   Random random(1);
-  for (std::uint32_t i = 0; i < 4; ++i) {
-    const PixelBox box = random_box(random);
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    const PixelBox box = random_box(random), seen = random_box(random);
     const double area = double{box.area()};
-    const double weight = 2 * area / (1 + area);
-    EXPECT_NEAR(sum(lamp(box), packed(box), i), area * kSamples, kOff * weight + 1) << i;
-    EXPECT_NEAR(sum(lamp({-1, -1, 2, 2}), packed(box), i), kSamples, kOff * (2 - weight) + 1) << i;
+    EXPECT_NEAR(sum(lamp(box), packed(box), i), area * kSamples, 1) << i;
+    EXPECT_NEAR(sum(lamp({-1, -1, 2, 2}), packed(box), i), kSamples, 1) << i;
+    EXPECT_NEAR(sum(lamp(seen), packed(box), i),
+                double{seen.area()} * kSamples,
+                kOff * (2 * area + 3 * 2 * (1 - area)))
+        << i;
   }
 }
 
@@ -137,9 +140,8 @@ TEST_P(PixelBoxes, MoveSamplesWithoutBias) {
 TEST_P(PixelBoxes, GetHalfOfTheSamples) {
   const std::uint32_t word = packed({.3f, .6f, .3f, .6f});
   const PixelBox box = unpacked(word);
-  const double area = double{box.area()};
+  const double area = double{box.area()}, weight = 2 * area;
   ASSERT_EQ(area, 0x1p-16);
-  const double weight = 2 * area / (1 + area);
   const Scene s = lamp({box.x0 - 1e-4f, box.y0 - 1e-4f, box.x1 + 1e-4f, box.y1 + 1e-4f});
   EXPECT_NEAR(sum(s, word, 3, 64), 32 * weight, .01 * weight);
 }
