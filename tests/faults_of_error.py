@@ -30,7 +30,7 @@ FAULTS = [
     adaptive("edges that lend", "kMinHits", "3", "30", "*.LendNothing*"),
     adaptive("audits of any weight", "kMaxErrorRatio", "16", "1e9", "*WithinReason*"),
     refinement("claims that no audit corrects", "block_errors.cpp",
-               "v *= static_cast<float>(r_.checked.ratio());", "", "Audits.CorrectWhat*"),
+               "const double ratio = r_.checked.ratio();", "const double ratio = 1;", "Audits.CorrectWhat*"),
     refinement("blocks that agree and are right", "block_errors.cpp",
                "static_cast<float>(r_.checked.by_sample()) / samples", "0.f",
                "Audits.SeeThrough*"),

@@ -74,8 +74,8 @@ struct ErrorStats {
   /// number of second, independent sets of samples of some pixels, each of other pixels; their
   /// differences from the picture correct rmse
   int checks = 0;
-  std::uint64_t check_samples = 0;  ///< samples of these sets; the picture does not contain them
-  std::uint64_t samples = 0;        ///< of all pixels; see RefineOptions::seconds
+  std::uint64_t check_samples = 0;    ///< samples of these sets; the picture does not contain them
+  std::uint64_t samples = 0;          ///< of all pixels; see RefineOptions::seconds
   std::uint32_t least = 0, most = 0;  ///< samples of a single pixel
   int rounds = 0;                     ///< of doubling the samples
 };

@@ -362,9 +362,6 @@ inline Block max_abs(const Block& a, const Block& b) {
   constexpr int magnitudes = 0b1011;
   return Block(_mm256_range_ps(a.data, b.data, magnitudes));
 }
-#endif
-
-#if GRELHA_ISA_NUMBER == 4
 template <class T, class V>
 requires(sizeof(V) == 64) inline void compress_store(T* to, const V& a, unsigned lanes) {
   const __m512i v = bits_as<__m512i>(a);

@@ -15,10 +15,7 @@ std::size_t object_count(const World::Impl& world);
 /// each point light on to the surface behind it. The pixels of a refined picture that a ray hits
 /// get boxes that later samples favour; until then r.missed holds the variances that the objects
 /// may add to blocks.
-void target_small_objects(const World::Impl& world,
-                          const Setup& setup,
-                          int threads,
-                          Refinement& r,
-                          TraceCounts& counts);
+void target_small_objects(
+    const World::Impl& world, const Setup& setup, int threads, Refinement& r, TraceCounts& counts);
 
 }  // namespace grelha
