@@ -61,6 +61,8 @@ class Member {
   static void pause() {
 #if defined(__x86_64__) || defined(__i386__)
     __builtin_ia32_pause();
+#elif defined(__aarch64__)
+    asm volatile("yield");
 #endif
   }
   /// A third of a millisecond: a build has nothing to share out for about so long at a time.
