@@ -10,9 +10,8 @@ set(CMAKE_FIND_ROOT_PATH ${root})
 set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
 set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
 set(CMAKE_CXX_FLAGS_INIT "-isystem ${root}/usr/include/aarch64-linux-gnu")
-set(libraries ${root}/usr/lib/aarch64-linux-gnu)
 set(CMAKE_EXE_LINKER_FLAGS_INIT
-  "-L${libraries} -Wl,-rpath-link,${libraries}:${root}/lib/aarch64-linux-gnu")
+  -Wl,-rpath-link,${root}/usr/lib/aarch64-linux-gnu:${root}/lib/aarch64-linux-gnu)
 set(CMAKE_SKIP_BUILD_RPATH ON)  # qemu finds libraries below the root, and the project's own here
 set(CMAKE_CROSSCOMPILING_EMULATOR
   qemu-aarch64 -L ${root} -E LD_LIBRARY_PATH=${CMAKE_BINARY_DIR})
