@@ -5,6 +5,7 @@
 #include <limits>
 #include <span>
 
+#include "grelha/inside.hpp"
 #include "grelha/query.hpp"
 
 namespace grelha {

@@ -14,6 +14,7 @@
 #include "grelha/distance.hpp"
 #include "grelha/geometry.hpp"
 #include "grelha/image.hpp"
+#include "grelha/inside.hpp"
 #include "grelha/owning_world.hpp"
 #include "grelha/query.hpp"
 #include "grelha/render.hpp"

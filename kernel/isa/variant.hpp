@@ -3,6 +3,7 @@
 // once per instruction set.
 
 #include "kernel/shade/strip.hpp"
+#include "kernel/query/crossing_sum.hpp"
 #include "kernel/query/loops.hpp"
 #include "kernel/query/nearest_search.hpp"
 
@@ -14,6 +15,7 @@ const VariantLoops kLoops{.closest = closest,
                           .closest_one = closest_one,
                           .occluded_one = occluded_one,
                           .closest_points = closest_points,
+                          .sum_crossings = sum_crossings,
                           .render_strip = render_strip,
                           .render_runs = render_runs,
                           .render_points = render_points};

@@ -2,14 +2,16 @@
 #include <iterator>
 #include <limits>
 
-#include "grelha/all_hits.hpp"
 #include "grelha/distance.hpp"
 #include "kernel/grid/world_impl.hpp"
+#include "kernel/query/insides.hpp"
 #include "kernel/query/runs.hpp"
 #include "kernel/query/variants.hpp"
 
 namespace grelha {
 namespace {
+
+constexpr float kAnyRadius = std::numeric_limits<float>::infinity();
 
 float signed_by(bool inside, float distance) {
   return inside ? 0 - distance : distance;  // no zero is -0
@@ -45,14 +47,16 @@ void signed_distances(const World& world,
                       std::span<float> distances,
                       const QueryOptions& options) {
   expect_same_size(points.size(), distances.size(), "points");
-  const ClosestPointsLoop loop = choose_variant(options.isa).loops.closest_points;
+  const Variant& variant = choose_variant(options.isa);
   const auto work = [&](std::size_t first, std::size_t end) {
     ClosestPoint found[kPoints.most];
+    std::uint8_t inside[kPoints.most];
     for (std::size_t i = first; i < end; i += std::size(found)) {
       const std::size_t count = std::min(std::size(found), end - i);
-      loop(world.impl().view, &points[i], count, std::numeric_limits<float>::infinity(), found);
+      variant.loops.closest_points(world.impl().view, &points[i], count, kAnyRadius, found);
+      find_insides(variant, world, points.subspan(i, count), inside);
       for (std::size_t k = 0; k < count; ++k)
-        distances[i + k] = signed_by(contains(world, points[i + k]), found[k].distance);
+        distances[i + k] = signed_by(inside[k] != 0, found[k].distance);
     }
   };
   each_run(points.size(), options, work, kPoints);

@@ -32,28 +32,16 @@ class CrossingList {
     apply_filter();
   }
 
-  // For walk_scene(). A ray that starts inside a sphere comes to it.
+  // For walk_scene().
   static constexpr bool kInAnyOrder = true;
   bool block(const scalar::Single&, const TriangleBlock& block) {
     for (int i = 0; i < kBlock && block.id[i] != kNoPrimitive; ++i)
       take(block.id[i], scalar::triangle_of(block, i));
     return false;
   }
-  bool arrays(const scalar::Single&, const CellLists& lists, std::size_t cell) {
-    const PrimitiveIds& ids = scene_.geometry.ids;
-    each_in_arrays(lists, cell, [&](std::uint32_t id) {
-      if (!ids.has(PrimitiveKind::kSphere, id))
-        return;
-      const auto sphere = primitive_at<Sphere>(scene_.geometry.of<Sphere>(),
-                                               id - ids.begin(PrimitiveKind::kSphere));
-      in_sphere_ = in_sphere_ || is_within(ray_.org, sphere.center, sphere.radius);
-    });
-    return false;
-  }
+  bool arrays(const scalar::Single&, const CellLists&, std::size_t) { return false; }
 
   std::size_t count() const { return found_.size(); }
-  /// True if the ray starts inside a sphere.
-  bool starts_in_sphere() const { return in_sphere_; }
 
   /// In the order in which the ray crosses them.
   std::vector<Crossing> in_order() {
@@ -129,7 +117,6 @@ class CrossingList {
   PreparedRay prepared_;
   ExactRay ray_{};
   std::vector<CrossedTriangle> found_;
-  bool in_sphere_ = false;
 };
 
 }  // namespace
@@ -166,25 +153,6 @@ void count_crossings(const World& world,
     for (std::size_t i = first; i < end; ++i)
       counts[i] = static_cast<std::uint32_t>(
           CrossingList(world, ray_of(rays, i), filter_of(rays, options, i)).count());
-  });
-}
-
-bool contains(const World& world, Float3 point) {
-  // no axis, plane of a lattice or diagonal of a cube: fewer edges to decide
-  constexpr Float3 kDirection{.4375f, .8125f, .3125f};
-  const Filter all;
-  const CrossingList found(world, {point, kDirection}, all);
-  return found.starts_in_sphere() || found.count() % 2 == 1;
-}
-
-void contains(const World& world,
-              std::span<const Float3> points,
-              std::span<std::uint8_t> inside,
-              const QueryOptions& options) {
-  expect_same_size(points.size(), inside.size(), "points");
-  each_run(points.size(), options, [&](std::size_t first, std::size_t end) {
-    for (std::size_t i = first; i < end; ++i)
-      inside[i] = contains(world, points[i]);
   });
 }
 

@@ -25,6 +25,15 @@ using OccludedLoop =
 using ClosestPointsLoop =
     void (*)(const SceneView&, const Float3*, std::size_t count, float radius, ClosestPoint*);
 
+/// What a ray from a point crosses; see contains().
+struct CrossingSum {
+  std::int32_t outwards = 0;  ///< triangles, less those that are crossed inwards
+  bool in_sphere = false;     ///< the point lies in a sphere
+  bool is_whole = true;       ///< false: there are too many for `outwards`
+};
+/// Adds up the crossings of rays from [count] points.
+using CrossingSumLoop = void (*)(const SceneView&, const Float3*, std::size_t count, CrossingSum*);
+
 /// The functions of one instruction set.
 struct VariantLoops {
   ClosestLoop closest;
@@ -33,6 +42,7 @@ struct VariantLoops {
   Hit (*closest_one)(const SceneView&, const Ray&, const Filter*);
   bool (*occluded_one)(const SceneView&, const Ray&, const Filter*);
   ClosestPointsLoop closest_points;
+  CrossingSumLoop sum_crossings;
   void (*render_strip)(const SceneView&,
                        const ShadingView&,
                        const FrameView&,

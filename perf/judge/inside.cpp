@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "grelha/all_hits.hpp"
+#include "grelha/inside.hpp"
 #include "perf/judge/judge.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/rational.hpp"

@@ -1,5 +1,6 @@
 // All hits of a ray, counts of them, primitives that are left out, and barycentric coordinates.
 #include "grelha/all_hits.hpp"
+#include "grelha/inside.hpp"
 
 #include <gtest/gtest.h>
 
