@@ -167,6 +167,38 @@ GRELHA_API grelha_status grelha_update_double(
 /// Errors    GRELHA_INVALID if `count` is neither 0 nor the number of primitives.
 GRELHA_API grelha_status grelha_set_masks(grelha_world* world, const uint8_t* masks, size_t count);
 
+/// Edges of a kind, and the first of them: the triangle with the lowest id that has one, and the
+/// vertices from which and to which it goes, as that triangle names them.
+typedef struct grelha_edges {
+  size_t count;
+  uint32_t id, from, to;  ///< GRELHA_NONE if there are none
+} grelha_edges;
+
+/// Triangles of a kind, and the lowest id.
+typedef struct grelha_ids {
+  size_t count;
+  uint32_t id;  ///< GRELHA_NONE if there are none
+} grelha_ids;
+
+/// What the triangles of a world are as a mesh. Vertices at one place are one vertex, whatever
+/// their indices; triangles with two corners at one place have no edges.
+typedef struct grelha_mesh_check {
+  size_t triangles;
+  size_t vertices;  ///< places of corners
+  size_t edges;
+  grelha_edges open;  ///< of an odd number of triangles; none: the mesh is closed
+  /// of an even number of triangles, of which not half go each way; none: the mesh is oriented
+  grelha_edges inconsistent;
+  grelha_edges nonmanifold;  ///< of more than two triangles
+  grelha_ids duplicate;      ///< with the corners of one before, in any order
+  grelha_ids degenerate;     ///< without area, exactly
+} grelha_mesh_check;
+
+/// Checks the triangles of a world. Exact; takes time in proportion to their number once, and keeps
+/// the answer. Triangles that cross each other are not looked for. Fails with GRELHA_INVALID for
+/// null.
+GRELHA_API grelha_status grelha_check_mesh(const grelha_world* world, grelha_mesh_check* found);
+
 /// Frees a world. Null is allowed.
 GRELHA_API void grelha_free(grelha_world* world);
 

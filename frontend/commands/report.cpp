@@ -1,6 +1,7 @@
 #include "frontend/commands/report.hpp"
 
 #include "frontend/commands/json.hpp"
+#include "frontend/commands/mesh_report.hpp"
 #include "frontend/commands/needs.hpp"
 #include "frontend/scene/bounds.hpp"
 #include "frontend/files/atomic_file.hpp"
@@ -287,6 +288,7 @@ std::string info_json(const SceneFile& file,
   json["frame"] = {{"offset", file.frame.offset}, {"scale", file.frame.scale}};
   json["memory"] = {{"scene", memory.scene}, {"grids", memory.grids}, {"peak", memory.peak}};
   json["grids"] = grids ? to_json(*grids) : nullptr;
+  json["mesh"] = grids && file.counts.ply > 0 ? mesh_json(file) : nullptr;
   for (const auto& [name, needed] : needs_of(file))
     json["needs"][name] = needed;
   json["made_up"] = {{"camera", file.default_camera}, {"light", file.default_light}};
@@ -324,6 +326,8 @@ std::string info_text(const std::string& path,
     text += "grid          not built: it would take more than " + available_memory() + '\n';
   for (const GridStats& grid : grids.value_or(std::vector<GridStats>{}))
     text += grid_text(grid);
+  if (grids && file.counts.ply > 0)
+    text += mesh_text(file);
   return text + needs_text(file);
 }
 

@@ -38,7 +38,7 @@ struct SceneMemory {
 std::string unmet_error(const RenderCommand& command, const RunReport& report);
 
 std::string stats_json(const RenderCommand& command, const RunReport& report);
-/// `grids`: absent when they were not built.
+/// `grids`: absent when they were not built; a mesh is not checked then.
 std::string info_json(const SceneFile& file,
                       const SceneMemory& memory,
                       const std::optional<std::vector<GridStats>>& grids);

@@ -15,6 +15,7 @@
 #include "grelha/geometry.hpp"
 #include "grelha/image.hpp"
 #include "grelha/inside.hpp"
+#include "grelha/mesh_check.hpp"
 #include "grelha/owning_world.hpp"
 #include "grelha/query.hpp"
 #include "grelha/render.hpp"

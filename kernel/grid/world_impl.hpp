@@ -5,8 +5,10 @@
 #include <memory>
 #include <vector>
 
-#include "kernel/grid/grid.hpp"
+#include "grelha/mesh_check.hpp"
 #include "grelha/world.hpp"
+#include "kernel/base/lazy.hpp"
+#include "kernel/grid/grid.hpp"
 #include "kernel/scene/materials.hpp"
 #include "kernel/scene/shading_view.hpp"
 
@@ -27,6 +29,7 @@ struct World::Impl {
   std::vector<float> lights;  ///< [kLightFloats * count], see ShadingView
   SceneView view;
   ShadingView shading;
+  Lazy<MeshCheck> mesh_check;
 
   Impl(const SceneSpans& scene, const BuildOptions& options);
   /// Everything built beside the scene.

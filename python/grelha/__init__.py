@@ -5,12 +5,12 @@ t counts lengths of the ray's direction; all other lengths are in the units of t
 docs/python.md has examples.
 """
 from ._grelha import __version__
-from ._results import ClosestPoints, CrossingLists, HitLists, Hits
+from ._results import ClosestPoints, CrossingLists, Findings, HitLists, Hits, MeshCheck
 from ._scene import Scene, read, write_image
 from ._world import World
 
 for _thing in (World, Scene, read, write_image):
     _thing.__module__ = "grelha"
 
-__all__ = ["ClosestPoints", "CrossingLists", "HitLists", "Hits", "Scene", "World", "__version__",
-           "read", "write_image"]
+__all__ = ["ClosestPoints", "CrossingLists", "Findings", "HitLists", "Hits", "MeshCheck", "Scene",
+           "World", "__version__", "read", "write_image"]

@@ -32,6 +32,26 @@ class ClosestPoints(NamedTuple):
     distance: Any
     id: Any
 
+class Findings(NamedTuple):
+    count: int
+    first: NDArray[np.int64]
+
+class MeshCheck(NamedTuple):
+    triangles: int
+    vertices: int
+    edges: int
+    open_edges: Findings
+    inconsistent_edges: Findings
+    nonmanifold_edges: Findings
+    duplicate_triangles: Findings
+    degenerate_triangles: Findings
+    @property
+    def closed(self) -> bool: ...
+    @property
+    def oriented(self) -> bool: ...
+    @property
+    def edge_manifold(self) -> bool: ...
+
 class World:
     def __init__(self, vertices: ArrayLike, faces: ArrayLike, *, threads: int = ...) -> None: ...
     @staticmethod
@@ -68,6 +88,7 @@ class World:
                         mask: ArrayLike | None = ..., threads: int = ...) -> Any: ...
     def start(self, face: ArrayLike, u: ArrayLike, v: ArrayLike,
               directions: ArrayLike) -> NDArray[Any]: ...
+    def check(self) -> MeshCheck: ...
     def contains(self, points: ArrayLike, *, threads: int = ...) -> Any: ...
     def closest_points(self, points: ArrayLike, radius: float = ..., *,
                        threads: int = ...) -> ClosestPoints: ...

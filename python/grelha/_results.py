@@ -31,3 +31,36 @@ class ClosestPoints(NamedTuple):
     points: Any  # float64 or float32 (..., 3)
     distance: Any  # float32; inf where there is none
     id: Any  # int64; -1 where there is none
+
+
+class Findings(NamedTuple):
+    """How many of some kind there are, and the first eight, those of the lowest faces."""
+    count: int
+    first: Any  # int64 (k,): faces; of edges (k, 3): a face, and the vertices it goes from and to
+
+
+class MeshCheck(NamedTuple):
+    """What a mesh is. Vertices at one place are one vertex, whatever their indices."""
+    triangles: int
+    vertices: int  # places of corners
+    edges: int
+    open_edges: Findings  # of an odd number of triangles
+    inconsistent_edges: Findings  # of an even number of triangles, of which not half go each way
+    nonmanifold_edges: Findings  # of more than two triangles
+    duplicate_triangles: Findings  # with the corners of one before, in any order
+    degenerate_triangles: Findings  # without area, exactly
+
+    @property
+    def closed(self):
+        """True if no edge is open."""
+        return self.open_edges.count == 0
+
+    @property
+    def oriented(self):
+        """True if neighbours agree on which side is the front: no edge is inconsistent."""
+        return self.inconsistent_edges.count == 0
+
+    @property
+    def edge_manifold(self):
+        """True if no edge has more than two triangles."""
+        return self.nonmanifold_edges.count == 0

@@ -218,6 +218,23 @@ class World:
         """
         return self._core.start(face, u, v, directions)
 
+    def check(self):
+        """Whether the faces form closed, oriented, manifold meshes, and where they do not.
+
+        Returns MeshCheck(triangles, vertices, edges, open_edges, inconsistent_edges,
+        nonmanifold_edges, duplicate_triangles, degenerate_triangles), with the properties closed,
+        oriented and edge_manifold. The last five members are Findings(count, first):
+
+        count   how many there are
+        first   int64 (k,): the eight lowest faces of that kind. Of edges (k, 3): the first face
+                that has it, and the vertices from which and to which it goes there
+
+        Exact. Vertices at one place are one vertex, whatever their indices; triangles with two
+        corners at one place have no edges. Triangles that cross each other are not looked for.
+        Takes time in proportion to their number once, and keeps the answer.
+        """
+        return self._core.check()
+
     def contains(self, points, *, threads=0):
         """True for each point inside a ball, or inside an odd number of closed meshes.
 

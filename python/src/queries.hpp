@@ -26,6 +26,9 @@ py::object nearest_points(const Model& model,
                           py::handle threads);
 py::object signed_distances_of(const Model& model, py::handle points, py::handle threads);
 
+/// What the triangles are as a mesh.
+py::object checked_mesh(const SharedModel& model);
+
 /// A class of grelha/_results.py.
 py::object result_class(const char* name);
 

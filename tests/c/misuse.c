@@ -129,6 +129,9 @@ static void test_points(const grelha_world* cube) {
       grelha_closest_points(NULL, org, 12, 1, 1, NULL, &d, NULL, 1), GRELHA_INVALID, "world: ");
   CHECK_ERROR(grelha_signed_distances(cube, org, 12, 1, NULL, 1), GRELHA_INVALID, "distance: ");
   CHECK_ERROR(grelha_signed_distances(NULL, org, 12, 1, &d, 1), GRELHA_INVALID, "world: ");
+  grelha_mesh_check found;
+  CHECK_ERROR(grelha_check_mesh(NULL, &found), GRELHA_INVALID, "world: ");
+  CHECK_ERROR(grelha_check_mesh(cube, NULL), GRELHA_INVALID, "found: ");
 }
 
 void test_misuse(void) {

@@ -82,3 +82,28 @@ void test_signed_distances(void) {
   CHECK(distance[0] == INFINITY);
   grelha_free(nothing);
 }
+
+void test_mesh_check(void) {
+  grelha_world* world = new_cube();
+  grelha_mesh_check found;
+  CHECK_OK(grelha_check_mesh(world, &found));
+  CHECK(found.triangles == kFaces && found.vertices == kCorners && found.edges == 18);
+  CHECK(found.open.count == 0 && found.open.id == GRELHA_NONE && found.inconsistent.count == 0);
+  CHECK(found.nonmanifold.count == 0 && found.duplicate.id == GRELHA_NONE);
+  grelha_free(world);
+
+  // without the first face; the third turned over, the last the same as that before
+  uint32_t faces[3 * (kFaces - 1)];
+  memcpy(faces, cube_indices + 3, sizeof faces);
+  faces[3] = 5;
+  faces[4] = 4;
+  memcpy(faces + 3 * (kFaces - 2), faces + 3 * (kFaces - 3), 3 * sizeof *faces);
+  CHECK_OK(grelha_new_triangles(cube_corners, 12, kCorners, faces, kFaces - 1, 1, &world));
+  CHECK_OK(grelha_check_mesh(world, &found));
+  CHECK(found.open.count == 7 && found.open.id == 0 && found.open.from == 1 && found.open.to == 2);
+  CHECK(found.inconsistent.count == 4 && found.inconsistent.id == 1);
+  CHECK(found.nonmanifold.count == 2);
+  CHECK(found.duplicate.count == 1 && found.duplicate.id == kFaces - 2);
+  CHECK(found.degenerate.count == 0);
+  grelha_free(world);
+}

@@ -71,6 +71,16 @@ TEST_F(LibraryPage, AllHits) {
   EXPECT_FALSE(last[1]);
 }
 
+TEST_F(LibraryPage, WhatAMeshIs) {
+  EXPECT_FALSE(page::first_gap(world));
+  Triangles& t = scene.geometry.triangles;
+  t.a.pop_back();  // 3 7 5
+  t.b.pop_back();
+  t.c.pop_back();
+  const World open(scene, {});
+  EXPECT_EQ(page::first_gap(open), (std::pair<std::uint32_t, std::uint32_t>{5, 7}));
+}
+
 TEST_F(LibraryPage, Inside) {
   EXPECT_EQ(page::filled_share(world, std::vector<Float3>{{0, 0, 0}, {0, 0, 2}, {.5f, 0, .5f}}),
             2. / 3);

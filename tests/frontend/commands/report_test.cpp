@@ -211,6 +211,7 @@ TEST(Info, JsonSaysWhatTheSceneHolds) {
                                    "frame",
                                    "memory",
                                    "grids",
+                                   "mesh",
                                    "needs",
                                    "made_up"}));
   EXPECT_EQ(json["scene"]["s"], 1);
@@ -246,6 +247,41 @@ TEST(Info, SaysHowBoxesAreRead) {
             std::string::npos);
   file.box_order = BoxOrder::kVertices;
   EXPECT_EQ(Json::parse(info_json(file, {}, {}))["aabb"], "corners");
+}
+
+/// A tetrahedron without its last face, and with one turned over and repeated.
+TEST(Info, ChecksMeshes) {
+  SceneFile file;
+  Triangles& t = file.scene.geometry.triangles;
+  t.x = {0, 1, 0, 0};
+  t.y = {0, 0, 1, 0};
+  t.z = {0, 0, 0, 1};
+  t.a = {0, 0, 0, 1};
+  t.b = {2, 1, 3, 2};
+  t.c = {1, 3, 2, 3};
+  EXPECT_TRUE(Json::parse(info_json(file, {}, {}))["mesh"].is_null());
+  file.counts.ply = 4;
+  const std::vector<GridStats> grids;
+  const auto mesh_line = [&] {
+    const std::string text = info_text("x.ply", file, {}, grids);
+    const std::size_t from = text.find("mesh  ");
+    return text.substr(from, text.find("needs") - from);
+  };
+  EXPECT_EQ(mesh_line(), "mesh          closed; oriented; edge-manifold\n");
+  t.a = {0, 0, 3, 3, 0};
+  t.b = {2, 1, 0, 0, 0};
+  t.c = {1, 3, 2, 2, 1};
+  EXPECT_EQ(
+      mesh_line(),
+      "mesh          4 open edges, the first from (0, 0, 0) to (0, 1, 0); 1 inconsistent edge, "
+      "from (0, 1, 0) to (0, 0, 1)\n"
+      "              2 non-manifold edges, 1 duplicate triangle, 1 degenerate triangle\n");
+  const Json json = Json::parse(info_json(file, {}, grids))["mesh"];
+  EXPECT_EQ(json["closed"], false);
+  EXPECT_EQ(json["open_edges"]["count"], 4);
+  EXPECT_EQ(json["open_edges"]["first"][0], Json::parse(R"({"triangle":0,"from":0,"to":2})"));
+  EXPECT_EQ(json["duplicate_triangles"]["first"], Json::parse("[3]"));
+  EXPECT_EQ(json["degenerate_triangles"]["first"], Json::parse("[4]"));
 }
 
 TEST(Info, TextListsTheSame) {

@@ -1,0 +1,25 @@
+#pragma once
+// What is made when it is first asked for.
+
+#include <mutex>
+#include <optional>
+
+namespace grelha {
+
+/// A value that the first thread to ask for it makes, while others wait. If that throws, the next
+/// one tries again.
+template <class T>
+class Lazy {
+ public:
+  template <class Make>
+  const T& get(const Make& make) const {
+    std::call_once(once_, [&] { value_.emplace(make()); });
+    return *value_;
+  }
+
+ private:
+  mutable std::once_flag once_;
+  mutable std::optional<T> value_;
+};
+
+}  // namespace grelha
