@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <new>
 
+#include "grelha/inside.hpp"
+
 namespace grelha::c {
 namespace {
 
@@ -34,6 +36,9 @@ int expect_threads(int threads) {
 grelha_status status_of_exception() noexcept {
   try {
     throw;
+  } catch (const NotClosed& error) {
+    keep(error.what());
+    return GRELHA_NOT_CLOSED;
   } catch (const std::invalid_argument& error) {
     keep(error.what());
     return GRELHA_INVALID;

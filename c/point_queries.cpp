@@ -12,10 +12,14 @@ namespace {
 /// Calls work(world, points, first, options) for copies of the points, a part at a time: the kernel
 /// wants them without gaps, and a copy of all could be too large.
 template <class Work>
-void each_part(const grelha_world* world, const PointArray& all, int threads, const Work& work) {
+void each_part(const grelha_world* world,
+               const PointArray& all,
+               int threads,
+               const Work& work,
+               InsideRule rule = {}) {
   constexpr std::size_t kPart = std::size_t{1} << 20;
   const World& asked = world_of(world);
-  const QueryOptions options{.threads = expect_threads(threads)};
+  const QueryOptions options{.threads = expect_threads(threads), .inside = rule};
   std::vector<Float3> points;
   for (std::size_t first = 0; first < all.count; first += kPart) {
     points.resize(std::min(kPart, all.count - first));
@@ -25,6 +29,13 @@ void each_part(const grelha_world* world, const PointArray& all, int threads, co
     }
     work(asked, std::span<const Float3>(points), first, options);
   }
+}
+
+InsideRule rule_of(grelha_inside rule) {
+  if (rule < GRELHA_CLOSED || rule > GRELHA_WINDING)
+    refuse("rule", "0 to 3", std::to_string(static_cast<int>(rule)));
+  static_assert(static_cast<int>(InsideRule::kWinding) == GRELHA_WINDING);
+  return static_cast<InsideRule>(rule);
 }
 
 /// Stores what is wanted of some answers.
@@ -55,6 +66,7 @@ grelha_status grelha_contains(const grelha_world* world,
                               const float* points,
                               ptrdiff_t stride,
                               size_t count,
+                              grelha_inside rule,
                               uint8_t* inside,
                               int threads) {
   using namespace grelha::c;
@@ -62,8 +74,29 @@ grelha_status grelha_contains(const grelha_world* world,
     if (count > 0)
       expect_there(inside, "inside");
     const grelha::PointArray all(points, stride, count, "points");
-    each_part(world, all, threads, [&](auto& asked, auto part, auto first, auto& options) {
+    const auto work = [&](auto& asked, auto part, auto first, auto& options) {
       grelha::contains(asked, part, {inside + first, part.size()}, options);
+    };
+    each_part(world, all, threads, work, rule_of(rule));
+  });
+}
+
+grelha_status grelha_winding_numbers(const grelha_world* world,
+                                     const float* points,
+                                     ptrdiff_t stride,
+                                     size_t count,
+                                     double error,
+                                     double* numbers,
+                                     int threads) {
+  using namespace grelha::c;
+  return guarded([&] {
+    if (!(error > 0))
+      refuse("error", "more than 0", std::to_string(error));
+    if (count > 0)
+      expect_there(numbers, "numbers");
+    const grelha::PointArray all(points, stride, count, "points");
+    each_part(world, all, threads, [&](auto& asked, auto part, auto first, auto& options) {
+      grelha::winding_numbers(asked, part, {numbers + first, part.size()}, error, options);
     });
   });
 }
@@ -95,6 +128,7 @@ grelha_status grelha_signed_distances(const grelha_world* world,
                                       const float* points,
                                       ptrdiff_t stride,
                                       size_t count,
+                                      grelha_inside rule,
                                       float* distance,
                                       int threads) {
   using namespace grelha::c;
@@ -102,8 +136,9 @@ grelha_status grelha_signed_distances(const grelha_world* world,
     if (count > 0)
       expect_there(distance, "distance");
     const grelha::PointArray all(points, stride, count, "points");
-    each_part(world, all, threads, [&](auto& asked, auto part, auto first, auto& options) {
+    const auto work = [&](auto& asked, auto part, auto first, auto& options) {
       grelha::signed_distances(asked, part, {distance + first, part.size()}, options);
-    });
+    };
+    each_part(world, all, threads, work, rule_of(rule));
   });
 }

@@ -41,7 +41,8 @@ typedef enum grelha_status {
   GRELHA_INVALID = 1,    ///< an argument is wrong: null, out of range, or not a number
   GRELHA_TOO_MANY = 2,   ///< more primitives than ids, or more hits than there is room for
   GRELHA_NO_MEMORY = 3,  ///< the memory ran out
-  GRELHA_FAILED = 4      ///< anything else, for example threads that could not be started
+  GRELHA_FAILED = 4,     ///< anything else, for example threads that could not be started
+  GRELHA_NOT_CLOSED = 5  ///< a mesh is not closed, or not oriented, as an inside rule asks
 } grelha_status;
 
 /// The id where there is no primitive.
@@ -270,19 +271,46 @@ GRELHA_API grelha_status grelha_each_hit(const grelha_world* world,
                                          grelha_visit visit,
                                          void* context);
 
-/// Tests if points lie inside a world: inside[i] is 1 or 0 for point i. Inside means inside an odd
-/// number of closed meshes, or inside a sphere. The answer is exact, and depends on no choice of a
-/// ray.
+/// Which points count as inside of triangles.
+typedef enum grelha_inside {
+  GRELHA_CLOSED = 0,   ///< as GRELHA_ODD, of closed meshes alone
+  GRELHA_ODD = 1,      ///< in an odd number of meshes; of an open one, by the crossings of one ray
+  GRELHA_NONZERO = 2,  ///< around which closed and oriented meshes wind at all: unions
+  GRELHA_WINDING = 3   ///< with a winding number above 1/2: open meshes, loose triangles
+} grelha_inside;
+
+/// Tests if points lie inside a sphere, or inside the triangles by a rule: inside[i] is 1 or 0 for
+/// point i. By every rule but GRELHA_WINDING the answer is exact: where the mesh is closed, it
+/// depends on no choice of a ray. The first call checks the mesh, or for GRELHA_WINDING puts it
+/// into clusters, and the world keeps what it found.
 ///
 /// Shapes    points: `count` points, `stride` bytes apart, not 0.
-/// Requires  that the triangles form closed meshes.
-/// Errors    GRELHA_INVALID for null and for a stride of 0. A point with a NaN is outside.
+/// Errors    GRELHA_NOT_CLOSED if the rule does not take the mesh: grelha_last_error() names the
+///           first edge. GRELHA_INVALID for null, a stride of 0 and no rule. A point with a NaN is
+///           outside.
 GRELHA_API grelha_status grelha_contains(const grelha_world* world,
                                          const float* points,
                                          ptrdiff_t stride,
                                          size_t count,
+                                         grelha_inside rule,
                                          uint8_t* inside,
                                          int threads);
+
+/// Stores the generalized winding number of the triangles around each point, within `error` and the
+/// rounding of doubles: the sum of their solid angles over 4 pi. It is how often a closed mesh
+/// winds around the point; of an open one, how much of all directions it covers. A point that is
+/// nearer to an edge than 2^-24 of its length may be further off. The less error is allowed, the
+/// longer it takes; .01 is a good start. NaN for a point with a NaN.
+///
+/// Shapes    as for grelha_contains(). numbers: [count].
+/// Errors    GRELHA_INVALID for null, a stride of 0, and an error that is not above 0.
+GRELHA_API grelha_status grelha_winding_numbers(const grelha_world* world,
+                                                const float* points,
+                                                ptrdiff_t stride,
+                                                size_t count,
+                                                double error,
+                                                double* numbers,
+                                                int threads);
 
 /// Finds the point of all surfaces that is closest to each point, if it is within `radius`, which
 /// may be infinity. Of two primitives at equal distance the one with the lower id is found.
@@ -303,13 +331,14 @@ GRELHA_API grelha_status grelha_closest_points(const grelha_world* world,
                                                uint32_t* id,
                                                int threads);
 
-/// Stores for each point the distance to the closest surface, negative inside, as
+/// Stores for each point the distance to the closest surface, negative inside by a rule, as
 /// grelha_contains() says. It is infinity if the world is empty. Shapes and errors are those of
 /// grelha_contains().
 GRELHA_API grelha_status grelha_signed_distances(const grelha_world* world,
                                                  const float* points,
                                                  ptrdiff_t stride,
                                                  size_t count,
+                                                 grelha_inside rule,
                                                  float* distance,
                                                  int threads);
 

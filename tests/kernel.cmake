@@ -29,7 +29,7 @@ find_library(GRELHA_GMP gmp)
 if(GRELHA_GMPXX)
   grelha_test(kernel/traverse/exact property grelha::kernel ${GRELHA_GMPXX} ${GRELHA_GMP})
   target_sources(exact_test PRIVATE kernel/query/agreement_test.cpp kernel/query/inside_test.cpp
-    kernel/traverse/expansion_test.cpp)
+    kernel/query/winding_test.cpp kernel/traverse/expansion_test.cpp)
 else()
   add_test(NAME exact COMMAND ${CMAKE_COMMAND} -E echo
     "SKIPPED: rational numbers need GMP (Debian: libgmp-dev)")

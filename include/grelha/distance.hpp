@@ -36,10 +36,11 @@ void closest_points(const World& world,
                     const QueryOptions& options = {});
 
 /// Returns the distance to the closest surface, negative inside; see contains() for what inside
-/// means. 0 has no sign. Infinity if the scene is empty.
-float signed_distance(const World& world, Float3 point);
-/// The same for many points, faster where each is near the one before. Reads options.threads,
-/// options.isa and options.progress. Throws std::invalid_argument if the lengths differ.
+/// means, and for what throws. 0 has no sign. Infinity if the scene is empty.
+float signed_distance(const World& world, Float3 point, InsideRule rule = InsideRule::kClosed);
+/// The same for many points, faster where each is near the one before. Reads options.inside,
+/// options.threads, options.isa and options.progress. Throws std::invalid_argument if the lengths
+/// differ.
 void signed_distances(const World& world,
                       std::span<const Float3> points,
                       std::span<float> distances,

@@ -16,7 +16,16 @@
 
 namespace grelha {
 
-/// How a stream of rays is traced. Only `mask` changes the results.
+/// Which points count as inside of the triangles of a scene.
+enum class InsideRule : std::uint8_t {
+  kClosed,   ///< as kOdd, of closed meshes alone
+  kOdd,      ///< in an odd number of meshes; of an open one, by the crossings of one ray
+  kNonzero,  ///< around which closed and oriented meshes wind at all: unions, doubled walls
+  /// with a generalized winding number above 1/2, see winding_number(): open meshes and soups
+  kWinding
+};
+
+/// How a stream of rays or points is asked. Only `mask` and `inside` change the results.
 struct QueryOptions {
   /// largest number of consecutive rays that are traced as one packet: 1, 16, 64 or 256
   int packet = 256;
@@ -24,6 +33,7 @@ struct QueryOptions {
   int threads = 1;                ///< threads that share the rays or points; 0: one per processor
   /// [primitives] masks by id, see Rays::mask; empty: 255 for all
   std::span<const std::uint8_t> mask{};
+  InsideRule inside = InsideRule::kClosed;  ///< read by contains() and signed_distances()
   /// Called repeatedly, by one thread at a time, with the fraction done. If it returns false, the
   /// query throws Stopped, and some answers are not written.
   std::function<bool(double)> progress{};

@@ -11,9 +11,10 @@ namespace grelha {
 template <class T>
 class Lazy {
  public:
-  template <class Make>
-  const T& get(const Make& make) const {
-    std::call_once(once_, [&] { value_.emplace(make()); });
+  /// Made of what `arguments` returns.
+  template <class Arguments>
+  const T& get(const Arguments& arguments) const {
+    std::call_once(once_, [&] { value_.emplace(arguments()); });
     return *value_;
   }
 

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "kernel/grid/grid.hpp"
+#include "kernel/grid/packed_order.hpp"
 #include "kernel/shapes/rounding.hpp"
 
 namespace grelha {
@@ -33,7 +34,7 @@ struct FloatBox {
 /// A cell that holds something, and where it is.
 struct OccupiedCell {
   std::uint32_t at[3];
-  std::uint32_t cell;
+  std::uint32_t id;  ///< of the cell
 };
 
 std::vector<OccupiedCell> occupied_cells(const Grid& g) {
@@ -48,62 +49,12 @@ std::vector<OccupiedCell> occupied_cells(const Grid& g) {
   return occupied;
 }
 
-/// Puts cells in the order of their boxes: splits them across their longest side into two parts of
-/// whole nodes, then each part.
-class CellOrder {
- public:
-  explicit CellOrder(const double (&cell)[3]) : cell_{cell[0], cell[1], cell[2]} {}
-
-  /// `node`: the most cells of a node of the level below, 8^k; recursion is as deep as the number
-  /// of cells has bits.
-  void sort(std::span<OccupiedCell> cells, std::size_t node) const {
-    while (node >= cells.size() && node > 1)
-      node /= kBlock;
-    if (cells.size() <= kBlock && node == 1)
-      return;
-    const int across = longest_side(cells);
-    const std::size_t nodes = (cells.size() + node - 1) / node;
-    const std::size_t middle = nodes / 2 * node;
-    const auto before = [across](const OccupiedCell& a, const OccupiedCell& b) {
-      return a.at[across] != b.at[across] ? a.at[across] < b.at[across] : a.cell < b.cell;
-    };
-    std::nth_element(
-        cells.begin(), cells.begin() + static_cast<std::ptrdiff_t>(middle), cells.end(), before);
-    sort(cells.first(middle), node);
-    sort(cells.subspan(middle), node);
-  }
-
- private:
-  int longest_side(std::span<const OccupiedCell> cells) const {
-    std::uint32_t lo[3], hi[3];
-    std::copy_n(cells[0].at, 3, lo);
-    std::copy_n(cells[0].at, 3, hi);
-    for (const OccupiedCell& c : cells)
-      for (int a = 0; a < 3; ++a) {
-        lo[a] = std::min(lo[a], c.at[a]);
-        hi[a] = std::max(hi[a], c.at[a]);
-      }
-    const auto length = [&](int a) { return (hi[a] - lo[a]) * cell_[a]; };
-    int longest = 0;
-    for (int a = 1; a < 3; ++a)
-      if (length(a) > length(longest))
-        longest = a;
-    return longest;
-  }
-
-  const double cell_[3];
-};
-
 std::vector<std::uint32_t> ordered_cells(const Grid& g) {
   std::vector<OccupiedCell> occupied = occupied_cells(g);
-  std::size_t node = 1;
-  while (node < occupied.size())
-    node *= kBlock;
-  CellOrder(g.cell).sort(occupied, node);
+  PackedOrder(g.cell).sort(std::span(occupied));
   std::vector<std::uint32_t> cells(occupied.size());
-  std::transform(occupied.begin(), occupied.end(), cells.begin(), [](const OccupiedCell& c) {
-    return c.cell;
-  });
+  std::transform(
+      occupied.begin(), occupied.end(), cells.begin(), [](const OccupiedCell& c) { return c.id; });
   return cells;
 }
 

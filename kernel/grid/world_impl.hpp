@@ -9,6 +9,7 @@
 #include "grelha/world.hpp"
 #include "kernel/base/lazy.hpp"
 #include "kernel/grid/grid.hpp"
+#include "kernel/grid/winding_tree.hpp"
 #include "kernel/scene/materials.hpp"
 #include "kernel/scene/shading_view.hpp"
 
@@ -30,6 +31,7 @@ struct World::Impl {
   SceneView view;
   ShadingView shading;
   Lazy<MeshCheck> mesh_check;
+  Lazy<WindingTree> winding_tree;
 
   Impl(const SceneSpans& scene, const BuildOptions& options);
   /// Everything built beside the scene.

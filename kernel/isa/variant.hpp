@@ -6,6 +6,7 @@
 #include "kernel/query/crossing_sum.hpp"
 #include "kernel/query/loops.hpp"
 #include "kernel/query/nearest_search.hpp"
+#include "kernel/query/winding_sum.hpp"
 
 namespace grelha::GRELHA_ISA {
 
@@ -16,6 +17,8 @@ const VariantLoops kLoops{.closest = closest,
                           .occluded_one = occluded_one,
                           .closest_points = closest_points,
                           .sum_crossings = sum_crossings,
+                          .winding_numbers = winding_numbers,
+                          .sort_by_winding = sort_by_winding,
                           .render_strip = render_strip,
                           .render_runs = render_runs,
                           .render_points = render_points};

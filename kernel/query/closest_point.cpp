@@ -38,8 +38,8 @@ void closest_points(const World& world,
   each_run(points.size(), options, work, kPoints);
 }
 
-float signed_distance(const World& world, Float3 point) {
-  return signed_by(contains(world, point), closest_point(world, point).distance);
+float signed_distance(const World& world, Float3 point, InsideRule rule) {
+  return signed_by(contains(world, point, rule), closest_point(world, point).distance);
 }
 
 void signed_distances(const World& world,
@@ -48,13 +48,14 @@ void signed_distances(const World& world,
                       const QueryOptions& options) {
   expect_same_size(points.size(), distances.size(), "points");
   const Variant& variant = choose_variant(options.isa);
+  prepare_insides(world, options.inside);
   const auto work = [&](std::size_t first, std::size_t end) {
     ClosestPoint found[kPoints.most];
     std::uint8_t inside[kPoints.most];
     for (std::size_t i = first; i < end; i += std::size(found)) {
       const std::size_t count = std::min(std::size(found), end - i);
       variant.loops.closest_points(world.impl().view, &points[i], count, kAnyRadius, found);
-      find_insides(variant, world, points.subspan(i, count), inside);
+      find_insides(variant, world, points.subspan(i, count), options.inside, inside);
       for (std::size_t k = 0; k < count; ++k)
         distances[i + k] = signed_by(inside[k] != 0, found[k].distance);
     }

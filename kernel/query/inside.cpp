@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <iterator>
+#include <stdexcept>
+#include <string>
 
 #include "grelha/all_hits.hpp"
 #include "kernel/grid/world_impl.hpp"
@@ -22,24 +24,65 @@ std::int64_t winding(const World& world, Float3 point, const CrossingSum& sum) {
   return outwards;
 }
 
+/// Throws NotClosed if there are edges of a kind.
+void expect_none(const Findings<MeshEdge>& edges, const char* wanted, const char* found) {
+  if (edges.count == 0)
+    return;
+  const MeshEdge& first = edges.first[0];
+  throw NotClosed(
+      "inside: expected " + std::string(wanted) + " mesh, found " + std::to_string(edges.count) +
+          ' ' + found + (edges.count == 1 ? " edge" : " edges, the first") + " from vertex " +
+          std::to_string(first.from) + " to " + std::to_string(first.to) + " of triangle " +
+          std::to_string(first.id) + "; the rule \"winding\" takes any mesh",
+      first);
+}
+
+const WindingTreeView& winding_tree(const World& world) {
+  const World::Impl& w = world.impl();
+  return w.winding_tree.get([&] { return w.scene.geometry.triangles; }).view;
+}
+
 }  // namespace
+
+void prepare_insides(const World& world, InsideRule rule) {
+  if (rule == InsideRule::kClosed || rule == InsideRule::kNonzero)
+    expect_none(check_mesh(world).open_edges, "a closed", "open");
+  if (rule == InsideRule::kNonzero)
+    expect_none(check_mesh(world).inconsistent_edges, "an oriented", "inconsistent");
+  if (rule == InsideRule::kWinding)
+    winding_tree(world);
+}
 
 void find_insides(const Variant& variant,
                   const World& world,
                   std::span<const Float3> points,
+                  InsideRule rule,
                   std::uint8_t* inside) {
+  const bool by_crossings = rule != InsideRule::kWinding;
+  if (!by_crossings)
+    variant.loops.sort_by_winding(winding_tree(world), points.data(), points.size(), inside);
+  const World::Impl& w = world.impl();
+  if (!by_crossings && w.primitives.of<Sphere>().size() == 0)
+    return;
   CrossingSum sums[64];
   for (std::size_t i = 0; i < points.size(); i += std::size(sums)) {
     const std::size_t count = std::min(std::size(sums), points.size() - i);
-    variant.loops.sum_crossings(world.impl().view, &points[i], count, sums);
-    for (std::size_t k = 0; k < count; ++k)
-      inside[i + k] = sums[k].in_sphere || winding(world, points[i + k], sums[k]) % 2 != 0;
+    variant.loops.sum_crossings(w.view, &points[i], count, sums);
+    for (std::size_t k = 0; k < count; ++k) {
+      bool is_inside = !by_crossings && inside[i + k] != 0;
+      if (by_crossings) {
+        const std::int64_t around = winding(world, points[i + k], sums[k]);
+        is_inside = rule == InsideRule::kNonzero ? around != 0 : around % 2 != 0;
+      }
+      inside[i + k] = is_inside || sums[k].in_sphere;
+    }
   }
 }
 
-bool contains(const World& world, Float3 point) {
+bool contains(const World& world, Float3 point, InsideRule rule) {
+  prepare_insides(world, rule);
   std::uint8_t inside = 0;
-  find_insides(best_variant(), world, {&point, 1}, &inside);
+  find_insides(best_variant(), world, {&point, 1}, rule, &inside);
   return inside != 0;
 }
 
@@ -49,8 +92,32 @@ void contains(const World& world,
               const QueryOptions& options) {
   expect_same_size(points.size(), inside.size(), "points");
   const Variant& variant = choose_variant(options.isa);
+  prepare_insides(world, options.inside);
   const auto work = [&](std::size_t first, std::size_t end) {
-    find_insides(variant, world, points.subspan(first, end - first), &inside[first]);
+    find_insides(
+        variant, world, points.subspan(first, end - first), options.inside, &inside[first]);
+  };
+  each_run(points.size(), options, work, kPoints);
+}
+
+double winding_number(const World& world, Float3 point, double error) {
+  double number = 0;
+  winding_numbers(world, {&point, 1}, {&number, 1}, error);
+  return number;
+}
+
+void winding_numbers(const World& world,
+                     std::span<const Float3> points,
+                     std::span<double> numbers,
+                     double error,
+                     const QueryOptions& options) {
+  expect_same_size(points.size(), numbers.size(), "points");
+  if (!(error > 0))
+    throw std::invalid_argument("error: expected more than 0, found " + std::to_string(error));
+  const WindingLoop loop = choose_variant(options.isa).loops.winding_numbers;
+  const WindingTreeView& tree = winding_tree(world);
+  const auto work = [&](std::size_t first, std::size_t end) {
+    loop(tree, &points[first], end - first, error, &numbers[first]);
   };
   each_run(points.size(), options, work, kPoints);
 }

@@ -11,6 +11,7 @@
 #include "kernel/scene/shading_view.hpp"
 #include "grelha/stats.hpp"
 #include "kernel/grid/view.hpp"
+#include "kernel/grid/winding_tree.hpp"
 
 namespace grelha {
 
@@ -34,6 +35,17 @@ struct CrossingSum {
 /// Adds up the crossings of rays from [count] points.
 using CrossingSumLoop = void (*)(const SceneView&, const Float3*, std::size_t count, CrossingSum*);
 
+/// Winding numbers of [count] points, within `error`.
+using WindingLoop = void (*)(
+    const WindingTreeView&, const Float3*, std::size_t count, double error, double* numbers);
+/// Whether winding numbers are above 1/2: [count] out, 1 or 0. Numbers that are within
+/// kLeastWindingError of it decide as they were computed.
+using SortByWindingLoop = void (*)(const WindingTreeView&,
+                                   const Float3*,
+                                   std::size_t count,
+                                   std::uint8_t* inside);
+inline constexpr double kLeastWindingError = 0x1p-18;
+
 /// The functions of one instruction set.
 struct VariantLoops {
   ClosestLoop closest;
@@ -43,6 +55,8 @@ struct VariantLoops {
   bool (*occluded_one)(const SceneView&, const Ray&, const Filter*);
   ClosestPointsLoop closest_points;
   CrossingSumLoop sum_crossings;
+  WindingLoop winding_numbers;
+  SortByWindingLoop sort_by_winding;
   void (*render_strip)(const SceneView&,
                        const ShadingView&,
                        const FrameView&,

@@ -292,6 +292,11 @@ void crossing_weights(const ExactRay& ray, const float (&corner)[3][3], double (
   share(edge, sum.estimate(), weight);
 }
 
+double volume_between(const double (&point)[3], const float (&corner)[3][3]) {
+  const auto way = [&](int k) { return difference(corner[k], point); };
+  return dot(cross(way(0), way(1)), way(2)).estimate();
+}
+
 bool is_within(const double (&point)[3], const float (&center)[3], float radius) {
   double squared = 0;
   for (int a = 0; a < 3; ++a)

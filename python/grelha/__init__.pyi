@@ -1,5 +1,5 @@
 from os import PathLike
-from typing import Any, NamedTuple, Sequence, TypedDict, Union
+from typing import Any, Literal, NamedTuple, Sequence, TypedDict, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 __version__: str
 
 _Path = Union[str, bytes, PathLike[str], PathLike[bytes]]
+_Inside = Literal["closed", "odd", "nonzero", "winding"]
 _Point = Union[Sequence[float], NDArray[Any]]
 
 class Hits(NamedTuple):
@@ -89,10 +90,14 @@ class World:
     def start(self, face: ArrayLike, u: ArrayLike, v: ArrayLike,
               directions: ArrayLike) -> NDArray[Any]: ...
     def check(self) -> MeshCheck: ...
-    def contains(self, points: ArrayLike, *, threads: int = ...) -> Any: ...
+    def contains(self, points: ArrayLike, *, inside: _Inside = ...,
+                 threads: int = ...) -> Any: ...
+    def winding_number(self, points: ArrayLike, error: float = ..., *,
+                       threads: int = ...) -> Any: ...
     def closest_points(self, points: ArrayLike, radius: float = ..., *,
                        threads: int = ...) -> ClosestPoints: ...
-    def signed_distance(self, points: ArrayLike, *, threads: int = ...) -> Any: ...
+    def signed_distance(self, points: ArrayLike, *, inside: _Inside = ...,
+                        threads: int = ...) -> Any: ...
 
 class _Camera(TypedDict):
     eye: tuple[float, float, float]

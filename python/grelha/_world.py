@@ -235,15 +235,37 @@ class World:
         """
         return self._core.check()
 
-    def contains(self, points, *, threads=0):
-        """True for each point inside a ball, or inside an odd number of closed meshes.
+    def contains(self, points, *, inside="closed", threads=0):
+        """True for each point inside a ball, or inside the mesh by a rule.
 
         points   (..., 3), or (3,) for one point, which gives a bool. Points that are not finite
                  are outside.
+        inside   "closed": in an odd number of closed meshes.
+                 "odd": the same without a check; of an open mesh the parity of crossings along one
+                 ray.
+                 "nonzero": where closed and oriented meshes wind around the point at all, as those
+                 that overlap or lie double do.
+                 "winding": where the winding number is above 1/2; of open meshes and loose faces.
 
-        The triangles must form closed meshes. Exact: it does not depend on a choice of ray. Returns a bool array of shape (...).
+        By every rule but "winding" the answer is exact: where the mesh is closed, it does not
+        depend on a choice of ray. Returns a bool array of shape (...). Raises ValueError that names
+        the first edge where the mesh is not closed, or not oriented, as the rule asks. The first
+        call checks the mesh, or puts it into clusters, and the World keeps what it found.
         """
-        return self._core.contains(points, threads)
+        return self._core.contains(points, inside, threads)
+
+    def winding_number(self, points, error=0.01, *, threads=0):
+        """The generalized winding number around each point: solid angles of the faces over 4 pi.
+
+        points   (..., 3), or (3,) for one point, which gives a float
+        error    a number above 0: the answers are within it, and most nearer by far. The less, the
+                 longer it takes. Points nearer to an edge than 2^-24 of its length may be further
+                 off.
+
+        It is how often a closed mesh winds around the point; of an open one, how much of all
+        directions it covers. Returns float64 of shape (...), nan for points that are not finite.
+        """
+        return self._core.winding_number(points, error, threads)
 
     def closest_points(self, points, radius=np.inf, *, threads=0):
         """The nearest point of all surfaces within a radius of each point, the radius included.
@@ -260,10 +282,12 @@ class World:
         """
         return self._core.closest_points(points, radius, threads)
 
-    def signed_distance(self, points, *, threads=0):
-        """The distance to the nearest surface, negative inside; contains() says what that means.
+    def signed_distance(self, points, *, inside="closed", threads=0):
+        """The distance to the nearest surface, negative inside by a rule.
+
+        inside   "closed", "odd", "nonzero" or "winding", as contains() describes
 
         Returns float32 of shape (...) for points of shape (..., 3), a float for one point. inf if
-        the World is empty.
+        the World is empty. Raises as contains() does.
         """
-        return self._core.signed_distance(points, threads)
+        return self._core.signed_distance(points, inside, threads)

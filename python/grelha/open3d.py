@@ -154,16 +154,17 @@ class RaycastingScene:
         return answer(self._commit().closest_points(points, threads=nthreads).distance)
 
     def compute_signed_distance(self, query_points, nthreads=0, nsamples=1):
-        """The same, negative inside closed meshes."""
+        """The same, negative inside closed meshes; of open ones by the crossings of one ray."""
         _check_samples(nsamples)
         points = _with_two_axes(query_points, "query_points", 3)
-        return answer(self._commit().signed_distance(points, threads=nthreads))
+        return answer(self._commit().signed_distance(points, inside="odd", threads=nthreads))
 
     def compute_occupancy(self, query_points, nthreads=0, nsamples=1):
-        """1 for each point (..., 3) inside closed meshes, else 0: float32 (...)."""
+        """1 for each point (..., 3) that has a negative distance, else 0: float32 (...)."""
         _check_samples(nsamples)
         points = _with_two_axes(query_points, "query_points", 3)
-        return answer(self._commit().contains(points, threads=nthreads).astype(np.float32))
+        inside = self._commit().contains(points, inside="odd", threads=nthreads)
+        return answer(inside.astype(np.float32))
 
     @staticmethod
     def create_rays_pinhole(*args, **kwargs):

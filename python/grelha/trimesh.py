@@ -84,8 +84,11 @@ class RayMeshIntersector:
         return self._commit().occluded(origins, directions)
 
     def contains_points(self, points):
-        """True for each point (n, 3) inside the closed mesh: (n,) bool. Exact, without rays."""
-        return self._commit().contains(_rows(points, "points"))
+        """True for each point (n, 3) inside the closed mesh: (n,) bool. Exact.
+
+        Of an open mesh, as in trimesh, the parity of crossings along one ray.
+        """
+        return self._commit().contains(_rows(points, "points"), inside="odd")
 
     def _commit(self):
         vertices, faces = self.mesh.vertices, self.mesh.faces

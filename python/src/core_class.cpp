@@ -54,12 +54,12 @@ auto of_rays(const Query& query) {
   };
 }
 
-/// A method that asks points.
+/// A method that asks points, and reads another argument.
 template <class Query>
 auto of_points(const Query& query) {
-  return [query](const Core& self, py::handle points, py::handle threads) {
+  return [query](const Core& self, py::handle points, py::handle argument, py::handle threads) {
     const SharedModel model = self.model;
-    return query(*model, points, threads);
+    return query(model, points, argument, threads);
   };
 }
 
@@ -114,11 +114,8 @@ void define_core(py::module_& module) {
   core.def("check", [](const Core& self) { return checked_mesh(SharedModel(self.model)); });
   core.def("contains", of_points(inside_points));
   core.def("signed_distance", of_points(signed_distances_of));
-  core.def("closest_points",
-           [](const Core& self, py::handle given, py::handle radius, py::handle threads) {
-             const SharedModel model = self.model;
-             return nearest_points(*model, given, radius, threads);
-           });
+  core.def("winding_number", of_points(winding_numbers_of));
+  core.def("closest_points", of_points(nearest_points));
   core.def(
       "start",
       [](const Core& self, py::handle face, py::handle u, py::handle v, py::handle directions) {

@@ -10,7 +10,29 @@
 namespace grelha::python {
 namespace {
 
-constexpr double kLargestRadius = 1e19;  ///< more than from one end of space to the other
+constexpr std::pair<const char*, InsideRule> kRules[] = {{"closed", InsideRule::kClosed},
+                                                         {"odd", InsideRule::kOdd},
+                                                         {"nonzero", InsideRule::kNonzero},
+                                                         {"winding", InsideRule::kWinding}};
+constexpr std::size_t kFewTriangles = 100'000;  ///< are checked in less than .05 s
+constexpr double kLargestRadius = 1e19;         ///< more than from one end of space to the other
+
+InsideRule rule_in(py::handle given) {
+  if (!py::isinstance<py::str>(given))
+    wrong_type("inside", "\"closed\", \"odd\", \"nonzero\" or \"winding\"", given);
+  const auto name = given.cast<std::string>();
+  for (const auto& [known, rule] : kRules)
+    if (name == known)
+      return rule;
+  wrong_value("inside", "\"closed\", \"odd\", \"nonzero\" or \"winding\"", name);
+}
+
+/// Lets a large mesh be checked, or put into clusters, while signals are heard: asked for no point,
+/// the kernel does nothing else.
+void prepare(const SharedModel& model, InsideRule rule) {
+  if (rule != InsideRule::kOdd && model->geometry().triangles.size() > kFewTriangles)
+    hear_signals_beside([model, rule] { contains(model->world(), {}, {}, {.inside = rule}); });
+}
 
 /// The points found, outside; where there is none, the points given.
 template <class T>
@@ -30,25 +52,31 @@ py::array_t<T> found_points(const Model& model,
 
 }  // namespace
 
-py::object inside_points(const Model& model, py::handle given, py::handle wanted) {
+py::object inside_points(const SharedModel& model,
+                         py::handle given,
+                         py::handle rule,
+                         py::handle wanted) {
   const int threads = threads_in(wanted);
+  const InsideRule inside_rule = rule_in(rule);
   const Triples asked(given, "points");
   std::vector<Float3> copy;
   py::array_t<bool> inside(asked.shape());
   auto* const to = reinterpret_cast<std::uint8_t*>(inside.mutable_data());
+  prepare(model, inside_rule);
   hear_signals(asked.count(), [&](const Progress& progress) {
-    contains(model.world(),
-             asked.in_frame(model.frame, copy),
+    contains(model->world(),
+             asked.in_frame(model->frame, copy),
              std::span(to, asked.count()),
-             {.threads = threads, .progress = progress});
+             {.threads = threads, .inside = inside_rule, .progress = progress});
   });
   return plain(inside, asked.shape());
 }
 
-py::object nearest_points(const Model& model,
+py::object nearest_points(const SharedModel& shared,
                           py::handle given,
                           py::handle within,
                           py::handle wanted) {
+  const Model& model = *shared;
   const int threads = threads_in(wanted);
   const double radius = number_in(within, "radius");
   if (!(radius >= 0 && (radius <= kLargestRadius || std::isinf(radius))))
@@ -79,22 +107,50 @@ py::object nearest_points(const Model& model,
   return result_class("ClosestPoints")(points, plain(distance, shape), plain(id, shape));
 }
 
-py::object signed_distances_of(const Model& model, py::handle given, py::handle wanted) {
+py::object signed_distances_of(const SharedModel& model,
+                               py::handle given,
+                               py::handle rule,
+                               py::handle wanted) {
   const int threads = threads_in(wanted);
+  const InsideRule inside_rule = rule_in(rule);
   const Triples asked(given, "points");
   std::vector<Float3> copy;
   py::array_t<float> distances(asked.shape());
   float* const to = distances.mutable_data();
+  prepare(model, inside_rule);
   hear_signals(asked.count(), [&](const Progress& progress) {
-    signed_distances(model.world(),
-                     asked.in_frame(model.frame, copy),
+    signed_distances(model->world(),
+                     asked.in_frame(model->frame, copy),
                      std::span(to, asked.count()),
-                     {.threads = threads, .progress = progress});
-    if (model.frame.scale != 1)
+                     {.threads = threads, .inside = inside_rule, .progress = progress});
+    if (model->frame.scale != 1)
       for (std::size_t i = 0; i < asked.count(); ++i)
-        to[i] = as_float(to[i] / model.frame.scale);
+        to[i] = as_float(to[i] / model->frame.scale);
   });
   return plain(distances, asked.shape());
+}
+
+py::object winding_numbers_of(const SharedModel& model,
+                              py::handle given,
+                              py::handle within,
+                              py::handle wanted) {
+  const int threads = threads_in(wanted);
+  const double error = number_in(within, "error");
+  if (!(error > 0))
+    wrong_value("error", "a number above 0", std::string(py::str(within)));
+  const Triples asked(given, "points");
+  std::vector<Float3> copy;
+  py::array_t<double> numbers(asked.shape());
+  double* const to = numbers.mutable_data();
+  prepare(model, InsideRule::kWinding);
+  hear_signals(asked.count(), [&](const Progress& progress) {
+    winding_numbers(model->world(),
+                    asked.in_frame(model->frame, copy),
+                    std::span(to, asked.count()),
+                    error,
+                    {.threads = threads, .progress = progress});
+  });
+  return plain(numbers, asked.shape());
 }
 
 }  // namespace grelha::python

@@ -19,12 +19,22 @@ struct StartArguments {
 };
 py::object start_points(const Model& model, const StartArguments& given);
 
-py::object inside_points(const Model& model, py::handle points, py::handle threads);
-py::object nearest_points(const Model& model,
+py::object inside_points(const SharedModel& model,
+                         py::handle points,
+                         py::handle rule,
+                         py::handle threads);
+py::object nearest_points(const SharedModel& model,
                           py::handle points,
                           py::handle radius,
                           py::handle threads);
-py::object signed_distances_of(const Model& model, py::handle points, py::handle threads);
+py::object signed_distances_of(const SharedModel& model,
+                               py::handle points,
+                               py::handle rule,
+                               py::handle threads);
+py::object winding_numbers_of(const SharedModel& model,
+                              py::handle points,
+                              py::handle error,
+                              py::handle threads);
 
 /// What the triangles are as a mesh.
 py::object checked_mesh(const SharedModel& model);

@@ -31,7 +31,7 @@ NO_COUNTS = [("2", TypeError), (1.5, TypeError), (None, TypeError), ([1], TypeEr
              (-1, ValueError), (10 ** 9, ValueError), (10 ** 30, ValueError)]
 RAY_METHODS = ("closest", "occluded", "all_hits", "count_hits", "crossings",
                "count_crossings")
-POINT_METHODS = ("contains", "closest_points", "signed_distance")
+POINT_METHODS = ("contains", "closest_points", "signed_distance", "winding_number")
 
 
 class Misuses(unittest.TestCase):

@@ -45,5 +45,81 @@ class Check(unittest.TestCase):
         self.assertEqual(grelha.World.spheres([[0, 0, 0]], 1).check().triangles, 0)
 
 
+def without(vertices, faces, beyond):
+    """The mesh without the faces beyond a height."""
+    return faces[vertices[faces][..., 2].max(-1) < beyond]
+
+
+class Rules(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.vertices, cls.faces = meshes.ball()
+        cls.points = np.random.default_rng(1).uniform(-1.3, 1.3, (3000, 3)).astype(np.float32)
+
+    def test_open(self):
+        open_faces = without(self.vertices, self.faces, 0.8)
+        world = grelha.World(self.vertices, open_faces)
+        for ask in (world.contains, world.signed_distance):
+            for rule in ({}, {"inside": "closed"}, {"inside": "nonzero"}):
+                with self.assertRaisesRegex(ValueError, "inside: expected a closed mesh, found [0-9]+ "
+                                            "open edges, the first from vertex .*\"winding\""):
+                    ask(self.points, **rule)
+        inside = world.contains(self.points, inside="winding")
+        number = world.winding_number(self.points, 1e-6)
+        np.testing.assert_array_equal(inside, number > 0.5)
+        np.testing.assert_allclose(number, winding(self.vertices, open_faces, self.points),
+                                   atol=2e-6)
+        distance = world.signed_distance(self.points, inside="winding")
+        np.testing.assert_array_equal(distance < 0, inside)
+        self.assertEqual(world.contains(self.points[0], inside="winding"), inside[0])
+        self.assertIsInstance(world.winding_number(self.points[0]), float)
+        self.assertEqual(world.winding_number(self.points.reshape(3, -1, 3)).shape, (3, 1000))
+        # the parity along one ray, as count_crossings() has it
+        ray = world.count_crossings(self.points, (0.4375, 0.8125, 0.3125))
+        np.testing.assert_array_equal(world.contains(self.points, inside="odd"), ray % 2 == 1)
+
+    def test_closed(self):
+        world = grelha.World(self.vertices, self.faces)
+        inside = world.contains(self.points)
+        for rule in ("odd", "nonzero", "winding"):
+            np.testing.assert_array_equal(world.contains(self.points, inside=rule), inside)
+        np.testing.assert_allclose(world.winding_number(self.points), inside, atol=0.01)
+
+    def test_union(self):
+        moved = np.concatenate([self.vertices, self.vertices + np.float32([0.7, 0, 0])])
+        both = grelha.World(moved, np.concatenate([self.faces, self.faces + len(self.vertices)]))
+        one, other = (grelha.World(part, self.faces).contains(self.points)
+                      for part in np.split(moved, 2))
+        np.testing.assert_array_equal(both.contains(self.points, inside="nonzero"), one | other)
+        np.testing.assert_array_equal(both.contains(self.points), one ^ other)
+
+    def test_far_away(self):
+        far = np.array([4e6, 5e6, 300.])
+        world = grelha.World(self.vertices + far, without(self.vertices, self.faces, 0.8))
+        near = grelha.World(self.vertices, without(self.vertices, self.faces, 0.8))
+        np.testing.assert_allclose(world.winding_number(self.points + far, 1e-3),
+                                   near.winding_number(self.points, 1e-3), atol=2e-2)
+
+    def test_wrong(self):
+        world = grelha.World(self.vertices, self.faces)
+        for ask in (world.contains, world.signed_distance):
+            with self.assertRaisesRegex(ValueError, "inside: expected .*winding.*, found even"):
+                ask(self.points, inside="even")
+            with self.assertRaisesRegex(TypeError, "inside: expected "):
+                ask(self.points, inside=1)
+        for bad in (0, -1, np.nan):
+            with self.assertRaisesRegex(ValueError, "error: expected a number above 0, found "):
+                world.winding_number(self.points, bad)
+
+
+def winding(vertices, faces, points):
+    """Winding numbers, after Van Oosterom and Strackee."""
+    a, b, c = (vertices[faces[:, k]].astype(np.float64) - points[:, None] for k in range(3))
+    la, lb, lc = (np.linalg.norm(v, axis=-1) for v in (a, b, c))
+    volume = (np.cross(a, b) * c).sum(-1)
+    beside = (la * lb * lc + (a * b).sum(-1) * lc + (b * c).sum(-1) * la + (c * a).sum(-1) * lb)
+    return np.arctan2(volume, beside).sum(-1) / (2 * np.pi)
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -28,6 +28,7 @@ void test_each_hit(void);
 void test_contains(void);
 void test_closest_points(void);
 void test_signed_distances(void);
+void test_inside_rules(void);
 void test_mesh_check(void);
 void test_misuse(void);
 void test_errors(void);

@@ -17,6 +17,7 @@ static const struct {
     {"contains", test_contains},
     {"closest_points", test_closest_points},
     {"signed_distances", test_signed_distances},
+    {"inside_rules", test_inside_rules},
     {"mesh_check", test_mesh_check},
     {"misuse", test_misuse},
     {"errors", test_errors},

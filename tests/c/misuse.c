@@ -115,11 +115,16 @@ static void test_all_hits_of(const grelha_world* cube) {
 static void test_points(const grelha_world* cube) {
   uint8_t inside;
   float d;
-  CHECK_ERROR(grelha_contains(NULL, org, 12, 1, &inside, 1), GRELHA_INVALID, "world: ");
-  CHECK_ERROR(grelha_contains(cube, NULL, 12, 1, &inside, 1), GRELHA_INVALID, "points: ");
-  CHECK_ERROR(grelha_contains(cube, org, 0, 1, &inside, 1), GRELHA_INVALID, "points: ");
-  CHECK_ERROR(grelha_contains(cube, org, 12, 1, NULL, 1), GRELHA_INVALID, "inside: ");
-  CHECK_ERROR(grelha_contains(cube, org, 12, 1, &inside, -2), GRELHA_INVALID, "threads: ");
+  CHECK_ERROR(
+      grelha_contains(NULL, org, 12, 1, GRELHA_CLOSED, &inside, 1), GRELHA_INVALID, "world: ");
+  CHECK_ERROR(
+      grelha_contains(cube, NULL, 12, 1, GRELHA_CLOSED, &inside, 1), GRELHA_INVALID, "points: ");
+  CHECK_ERROR(
+      grelha_contains(cube, org, 0, 1, GRELHA_CLOSED, &inside, 1), GRELHA_INVALID, "points: ");
+  CHECK_ERROR(
+      grelha_contains(cube, org, 12, 1, GRELHA_CLOSED, NULL, 1), GRELHA_INVALID, "inside: ");
+  CHECK_ERROR(
+      grelha_contains(cube, org, 12, 1, GRELHA_CLOSED, &inside, -2), GRELHA_INVALID, "threads: ");
   CHECK_ERROR(grelha_closest_points(cube, org, 12, 1, NAN, NULL, &d, NULL, 1),
               GRELHA_INVALID,
               "radius: expected 0 or more, found nan");
@@ -127,8 +132,17 @@ static void test_points(const grelha_world* cube) {
       grelha_closest_points(cube, org, 12, 1, -1, NULL, &d, NULL, 1), GRELHA_INVALID, "radius: ");
   CHECK_ERROR(
       grelha_closest_points(NULL, org, 12, 1, 1, NULL, &d, NULL, 1), GRELHA_INVALID, "world: ");
-  CHECK_ERROR(grelha_signed_distances(cube, org, 12, 1, NULL, 1), GRELHA_INVALID, "distance: ");
-  CHECK_ERROR(grelha_signed_distances(NULL, org, 12, 1, &d, 1), GRELHA_INVALID, "world: ");
+  CHECK_ERROR(grelha_signed_distances(cube, org, 12, 1, GRELHA_CLOSED, NULL, 1),
+              GRELHA_INVALID,
+              "distance: ");
+  CHECK_ERROR(
+      grelha_signed_distances(NULL, org, 12, 1, GRELHA_CLOSED, &d, 1), GRELHA_INVALID, "world: ");
+  CHECK_ERROR(grelha_contains(cube, org, 12, 1, (grelha_inside)4, &inside, 1),
+              GRELHA_INVALID,
+              "rule: expected 0 to 3, found 4");
+  double number;
+  CHECK_ERROR(grelha_winding_numbers(NULL, org, 12, 1, 1, &number, 1), GRELHA_INVALID, "world: ");
+  CHECK_ERROR(grelha_winding_numbers(cube, org, 12, 1, 1, NULL, 1), GRELHA_INVALID, "numbers: ");
   grelha_mesh_check found;
   CHECK_ERROR(grelha_check_mesh(NULL, &found), GRELHA_INVALID, "world: ");
   CHECK_ERROR(grelha_check_mesh(cube, NULL), GRELHA_INVALID, "found: ");

@@ -11,16 +11,16 @@ enum { kStride = 16, kPoints = 5 };
 void test_contains(void) {
   grelha_world* const cube = new_cube();
   uint8_t inside[kPoints];
-  CHECK_OK(grelha_contains(cube, points, kStride, kPoints, inside, 1));
+  CHECK_OK(grelha_contains(cube, points, kStride, kPoints, GRELHA_CLOSED, inside, 1));
   CHECK(inside[0] == 1 && inside[1] == 0 && inside[2] == 1 && inside[3] == 0 && inside[4] == 0);
-  CHECK_OK(grelha_contains(cube, NULL, 0, 0, NULL, 1));
+  CHECK_OK(grelha_contains(cube, NULL, 0, 0, GRELHA_CLOSED, NULL, 1));
 
   // more points than are asked at once
   const size_t count = ((size_t)1 << 20) + 3;
   float* const many = calloc(3 * count, sizeof *many);
   uint8_t* const answers = calloc(count, 1);
   many[3 * count - 1] = 2;
-  CHECK_OK(grelha_contains(cube, many, 12, count, answers, 2));
+  CHECK_OK(grelha_contains(cube, many, 12, count, GRELHA_CLOSED, answers, 2));
   size_t sum = 0;
   for (size_t i = 0; i < count; ++i)
     sum += answers[i];
@@ -31,10 +31,10 @@ void test_contains(void) {
 
   grelha_world* const ball = new_ball();
   const float middle[] = {1, 2, 3, 1, 2, 99};
-  CHECK_OK(grelha_contains(ball, middle, 12, 2, inside, 1));
+  CHECK_OK(grelha_contains(ball, middle, 12, 2, GRELHA_CLOSED, inside, 1));
   CHECK(inside[0] == 1 && inside[1] == 0);
   float distance[2];
-  CHECK_OK(grelha_signed_distances(ball, middle, 12, 2, distance, 1));
+  CHECK_OK(grelha_signed_distances(ball, middle, 12, 2, GRELHA_CLOSED, distance, 1));
   CHECK(distance[0] < 0 && distance[1] > 0);
   grelha_free(ball);
 }
@@ -73,14 +73,51 @@ void test_closest_points(void) {
 void test_signed_distances(void) {
   grelha_world* const cube = new_cube();
   float distance[kPoints];
-  CHECK_OK(grelha_signed_distances(cube, points, kStride, 4, distance, 1));
+  CHECK_OK(grelha_signed_distances(cube, points, kStride, 4, GRELHA_CLOSED, distance, 1));
   CHECK(distance[0] == -1 && distance[1] == 2 && distance[2] == -.25f && distance[3] == 5);
   grelha_free(cube);
   grelha_world* nothing = NULL;
   CHECK_OK(grelha_new_triangles(NULL, 12, 0, NULL, 0, 1, &nothing));
-  CHECK_OK(grelha_signed_distances(nothing, points, kStride, 1, distance, 1));
+  CHECK_OK(grelha_signed_distances(nothing, points, kStride, 1, GRELHA_CLOSED, distance, 1));
   CHECK(distance[0] == INFINITY);
   grelha_free(nothing);
+}
+
+void test_inside_rules(void) {
+  grelha_world* world = NULL;
+  uint8_t inside[kPoints];
+  float distance[kPoints];
+  double number[kPoints];
+  // without its last face
+  CHECK_OK(grelha_new_triangles(cube_corners, 12, kCorners, cube_indices, kFaces - 1, 1, &world));
+  CHECK_ERROR(grelha_contains(world, points, kStride, 1, GRELHA_CLOSED, inside, 1),
+              GRELHA_NOT_CLOSED,
+              "found 3 open edges, the first from vertex ");
+  CHECK_ERROR(grelha_signed_distances(world, points, kStride, 1, GRELHA_NONZERO, distance, 1),
+              GRELHA_NOT_CLOSED,
+              "inside: expected a closed mesh");
+  CHECK_OK(grelha_contains(world, points, kStride, kPoints, GRELHA_WINDING, inside, 1));
+  CHECK(inside[0] == 1 && inside[1] == 0 && inside[2] == 1 && inside[3] == 0 && inside[4] == 0);
+  CHECK_OK(grelha_signed_distances(world, points, kStride, 2, GRELHA_WINDING, distance, 1));
+  CHECK(distance[0] == -1 && distance[1] == 2);
+  CHECK_OK(grelha_contains(world, points, kStride, 1, GRELHA_ODD, inside, 1));
+  CHECK_OK(grelha_winding_numbers(world, points, kStride, kPoints, 1e-6, number, 1));
+  CHECK(fabs(number[0] - 11. / 12) < 1e-5 && number[1] < .1 && isnan(number[4]));
+  CHECK_ERROR(grelha_winding_numbers(world, points, kStride, 1, 0, number, 1),
+              GRELHA_INVALID,
+              "error: expected more than 0, found 0");
+  grelha_free(world);
+
+  // each face twice
+  uint32_t twice[6 * kFaces];
+  memcpy(twice, cube_indices, sizeof cube_indices);
+  memcpy(twice + 3 * kFaces, cube_indices, sizeof cube_indices);
+  CHECK_OK(grelha_new_triangles(cube_corners, 12, kCorners, twice, 2 * kFaces, 1, &world));
+  CHECK_OK(grelha_contains(world, points, kStride, 1, GRELHA_CLOSED, inside, 1));
+  CHECK(inside[0] == 0);
+  CHECK_OK(grelha_contains(world, points, kStride, 2, GRELHA_NONZERO, inside, 1));
+  CHECK(inside[0] == 1 && inside[1] == 0);
+  grelha_free(world);
 }
 
 void test_mesh_check(void) {

@@ -84,6 +84,13 @@ TEST_F(LibraryPage, WhatAMeshIs) {
 TEST_F(LibraryPage, Inside) {
   EXPECT_EQ(page::filled_share(world, std::vector<Float3>{{0, 0, 0}, {0, 0, 2}, {.5f, 0, .5f}}),
             2. / 3);
+  Triangles& t = scene.geometry.triangles;
+  t.a.pop_back();
+  t.b.pop_back();
+  t.c.pop_back();
+  const World scan(scene, {});
+  EXPECT_EQ(page::filled_share_of_scan(scan, std::vector<Float3>{{0, 0, 0}, {0, 0, 2}}), .5);
+  EXPECT_THROW(page::filled_share(scan, std::vector<Float3>(1)), NotClosed);
 }
 
 TEST_F(LibraryPage, Distance) {

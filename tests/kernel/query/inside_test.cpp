@@ -1,82 +1,28 @@
 // Insides of meshes, against rational numbers.
+#include "grelha/distance.hpp"
 #include "grelha/inside.hpp"
 
 #include <gtest/gtest.h>
 
 #include "kernel/query/variants.hpp"
-#include "tests/support/hard_meshes.hpp"
+#include "tests/support/inside_cases.hpp"
 #include "tests/support/rational_winding.hpp"
-#include "tests/support/scenes.hpp"
 
 namespace grelha::test {
 namespace {
 
 constexpr std::size_t kPoints = 400;  ///< a mesh
 
-/// Adds the triangles of another mesh: moved, scaled, and with their corners in the other order.
-void add_mesh(Scene& s, const Scene& other, const Float3& by, double scale = 1, bool turn = false) {
-  const Triangles& t = other.geometry.triangles;
-  for (std::size_t i = 0; i < t.size(); ++i) {
-    const auto corner = [&](std::uint32_t v) { return at(by, scale, vertex(other, v)); };
-    add_triangle(s, corner(t.a[i]), corner(turn ? t.c[i] : t.b[i]), corner(turn ? t.b[i] : t.c[i]));
-  }
-}
-
-/// Points in and around the box of a unit mesh, far away, on a lattice, and beside vertices.
-std::vector<Float3> points_around(const Scene& s, std::uint64_t seed) {
-  Random random(seed);
-  std::vector<Float3> points;
-  const auto vertices = static_cast<std::uint32_t>(s.geometry.triangles.vertex_count());
-  for (std::size_t i = 0; i < kPoints; ++i) {
-    const Float3 near = vertex(s, random.below(vertices));
-    const Float3 on_lattice = scaled({static_cast<float>(random.below(17)) - 8,
-                                      static_cast<float>(random.below(17)) - 8,
-                                      static_cast<float>(random.below(17)) - 8},
-                                     .125);
-    switch (i % 4) {
-      case 0:
-        points.push_back(random.point(i % 16 == 0 ? 1e4 : 1.3));
-        break;
-      case 1:
-        points.push_back(on_lattice);
-        break;
-      default:
-        points.push_back(at(near, random.log_in(1e-7, .3), random.direction()));
-    }
-  }
-  return points;
-}
-
-/// Closed meshes: plain, doubled, overlapping, turned inside out, nested, thin, beside spheres.
-std::vector<Scene> closed_meshes() {
-  std::vector<Scene> all = {ball_mesh(16, 8), torus_mesh(20, 12, .4)};
-  all.push_back(with_copies(all[1]));
-  Scene overlapping = empty_scene();
-  add_mesh(overlapping, ball_mesh(14, 7), {-.25f, 0, 0}, .7);
-  add_mesh(overlapping, torus_mesh(18, 10, .4), {.25f, .125f, 0}, .7);
-  all.push_back(overlapping);
-  Scene turned = empty_scene();
-  add_mesh(turned, ball_mesh(14, 7), {}, 1, true);
-  all.push_back(turned);
-  Scene nested = empty_scene();  // 84 walls to one side
-  for (int i = 0; i < 84; ++i)
-    add_mesh(nested, ball_mesh(5, 3), {}, .2 + .01 * i, i % 3 == 0);
-  all.push_back(nested);
-  Scene thin = torus_mesh(24, 10, .4);
-  for (float& y : thin.geometry.triangles.y)
-    y *= 1e-5f;
-  all.push_back(thin);
-  return all;
-}
-
-TEST(Contains, IsTheParityOfRationalCrossings) {
-  std::size_t judged = 0, within = 0;
+TEST(Contains, CountsAsRationalCrossings) {
+  std::size_t judged = 0, within = 0, wound = 0;
   std::uint64_t seed = 0;
   for (const Scene& s : closed_meshes()) {
     const World world(s, {});
-    const std::vector<Float3> points = points_around(s, ++seed);
+    const std::vector<Float3> points = points_around(s, ++seed, kPoints);
     std::vector<std::uint8_t> inside(points.size());
     contains(world, points, inside, {.threads = 2});
+    std::vector<std::uint8_t> nonzero(points.size());
+    contains(world, points, nonzero, {.threads = 2, .inside = InsideRule::kNonzero});
     Random random(seed);
     for (std::size_t i = 0; i < points.size(); ++i) {
       EXPECT_EQ(inside[i] != 0, contains(world, points[i])) << "mesh " << seed << ", point " << i;
@@ -84,12 +30,16 @@ TEST(Contains, IsTheParityOfRationalCrossings) {
       if (!expected)
         continue;
       EXPECT_EQ(inside[i] != 0, *expected % 2 != 0) << "mesh " << seed << ", point " << i;
+      EXPECT_EQ(nonzero[i] != 0, *expected != 0) << "mesh " << seed << ", point " << i;
+      EXPECT_EQ(nonzero[i] != 0, contains(world, points[i], InsideRule::kNonzero));
       ++judged;
       within += inside[i];
+      wound += nonzero[i];
     }
   }
   EXPECT_GT(judged, 6 * kPoints);
   EXPECT_GT(within, kPoints);
+  EXPECT_GT(wound, within + kPoints / 2);
 }
 
 /// More crossings on one side than a walk keeps, and more copies than a cell does.
@@ -104,11 +54,49 @@ TEST(Contains, CountsAnyNumberOfCrossings) {
   }
 }
 
+std::string refusal(const World& world, InsideRule rule, MeshEdge& edge) {
+  try {
+    contains(world, {0, 0, 0}, rule);
+  } catch (const NotClosed& e) {
+    edge = e.edge;
+    return e.what();
+  }
+  return "";
+}
+
+TEST(Contains, RefusesWhatARuleDoesNotTake) {
+  Scene s = ball_mesh(8, 4);
+  Triangles& t = s.geometry.triangles;
+  std::swap(t.a[5], t.b[5]);
+  MeshEdge edge{};
+  const World turned(s, {});
+  EXPECT_TRUE(contains(turned, {0, 0, 0}));
+  EXPECT_EQ(refusal(turned, InsideRule::kNonzero, edge)
+                .find("inside: expected an oriented mesh, "
+                      "found 3 inconsistent edges, "),
+            0u);
+  t.a[5] = t.b[5];
+  const World open(s, {});
+  const std::string told = refusal(open, InsideRule::kClosed, edge);
+  EXPECT_EQ(told.find("inside: expected a closed mesh, found 3 open edges, the first from "), 0u);
+  EXPECT_NE(told.find(std::to_string(edge.from) + " to " + std::to_string(edge.to) +
+                      " of triangle " + std::to_string(edge.id) + "; the rule \"winding\""),
+            std::string::npos);
+  EXPECT_NE(refusal(open, InsideRule::kNonzero, edge), "");
+  EXPECT_EQ(refusal(open, InsideRule::kOdd, edge), "");
+  EXPECT_EQ(refusal(open, InsideRule::kWinding, edge), "");
+  float distance = 0;
+  const Float3 middle{};
+  EXPECT_THROW(signed_distance(open, middle), NotClosed);
+  EXPECT_THROW(signed_distances(open, {&middle, 1}, {&distance, 1}), NotClosed);
+  EXPECT_LT(signed_distance(open, middle, InsideRule::kWinding), 0);
+}
+
 TEST(Contains, IsTheSameByEveryInstructionSet) {
   std::uint64_t seed = 20;
   for (const Scene& s : closed_meshes()) {
     const World world(s, {});
-    const std::vector<Float3> points = points_around(s, ++seed);
+    const std::vector<Float3> points = points_around(s, ++seed, kPoints);
     std::vector<std::uint8_t> expected(points.size()), inside(points.size());
     contains(world, points, expected, {.isa = "scalar"});
     for (const Variant* variant : variants()) {

@@ -1,0 +1,220 @@
+// Generalized winding numbers, against long double.
+#include <gtest/gtest.h>
+
+#include <bit>
+
+#include "grelha/distance.hpp"
+#include "grelha/inside.hpp"
+#include "kernel/query/solid_angle.hpp"
+#include "kernel/query/variants.hpp"
+#include "tests/support/inside_cases.hpp"
+#include "tests/support/rational.hpp"
+#include "tests/support/solid_angle.hpp"
+
+namespace grelha::test {
+namespace {
+
+constexpr std::size_t kPoints = 120;  ///< a mesh
+
+std::vector<Scene> meshes() {
+  std::vector<Scene> all = open_meshes();
+  for (const Scene& s : closed_meshes())
+    all.push_back(s);
+  return all;
+}
+
+TEST(AngleOf, IsThatOfLongDouble) {
+  Random random(1);
+  for (int i = 0; i < 200000; ++i) {
+    const double x = random.sign() * random.log_in(1e-6, 1), y = random.sign() * random.unit();
+    const long double expected = std::atan2(static_cast<long double>(y), x);
+    EXPECT_NEAR(scalar::angle_of<double>(x, y), static_cast<double>(expected), 0x1p-50);
+  }
+  EXPECT_EQ(scalar::angle_of<double>(0, 0), 0);
+  EXPECT_EQ(scalar::angle_of<double>(2, 0), 0);
+  EXPECT_EQ(scalar::angle_of<double>(0, -1), -scalar::angle_of<double>(0, 1));
+}
+
+/// However little error is allowed, and from however far away.
+TEST(WindingNumber, IsWithinTheErrorAllowed) {
+  std::uint64_t seed = 0;
+  double largest = 0;
+  for (const Scene& s : meshes()) {
+    const World world(s, {});
+    const std::vector<Float3> points = points_around(s, ++seed, kPoints);
+    for (const double error : {1., .1, 0x1p-7, 1e-4, 1e-8}) {
+      std::vector<double> numbers(points.size());
+      winding_numbers(world, points, numbers, error, {.threads = 2});
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        const auto expected = static_cast<double>(winding_number(s.geometry.triangles, points[i]));
+        EXPECT_NEAR(numbers[i], expected, error + 1e-9) << "mesh " << seed << ", point " << i;
+        largest = std::max(largest, std::abs(numbers[i] - expected));
+        if (i % 10 == 0) {
+          EXPECT_EQ(numbers[i], grelha::winding_number(world, points[i], error));
+        }
+      }
+    }
+  }
+  EXPECT_GT(largest, 1e-3) << "all numbers were exact";
+}
+
+/// Triangles near a point, and how far off their winding number may be from far away.
+struct Heap {
+  Float3 middle;
+  double area = 0, spread = 0, radius = 0;
+
+  void add(Scene& s, const Float3 (&corner)[3]) {
+    add_triangle(s, corner[0], corner[1], corner[2]);
+    const oracle::V normal =
+        cross(brute::v(minus(corner[1], corner[0])), brute::v(minus(corner[2], corner[0])));
+    const auto own = static_cast<double>(length(normal)) / 2;
+    area += own;
+    for (const Float3& p : corner) {
+      const auto away = static_cast<double>(length(brute::v(minus(p, middle))));
+      spread += own * away * away / 3;
+      radius = std::max(radius, away);
+    }
+  }
+  /// The terms left out are 4 q^3 + 5 q^4 + ..., with q the size over the distance.
+  double error(const Float3& p) const {
+    const auto distance = static_cast<double>(length(brute::v(minus(middle, p))));
+    return 4.2 * radius * spread / std::pow(distance, 5) / (4 * std::numbers::pi);
+  }
+};
+
+/// Eight heaps at the corners of a cube are the clusters of the uppermost row. A term with a wrong
+/// factor is of an order less than what may be left out.
+TEST(WindingNumber, HasTheTermsOfClusters) {
+  Random random(11);
+  for (const int in_heap : {8, 64, 512})
+    for (int round = 0; round < 40; ++round) {
+      Scene s = empty_scene();
+      const Float3 p = random.point(900);
+      double allowed = 0;
+      for (int i = 0; i < 8; ++i) {
+        const auto side = [&](int bit) { return (i & bit) != 0 ? 3e3f : -3e3f; };
+        Heap heap{at({side(1), side(2), side(4)}, 1, random.point(200))};
+        for (int k = 0; k < in_heap; ++k) {
+          const auto corner = [&] { return at(heap.middle, 1, random.point(1)); };
+          heap.add(s, {corner(), corner(), corner()});
+        }
+        allowed += heap.error(p);
+      }
+      const oracle::Real expected = winding_number(s.geometry.triangles, p, small_solid_angle);
+      const double found = grelha::winding_number(World(s, {}), p, 1);
+      EXPECT_LT(std::abs(found - expected), allowed) << in_heap;
+    }
+}
+
+TEST(WindingNumber, TellsInsideOfOpenMeshes) {
+  std::uint64_t seed = 30;
+  std::size_t within = 0;
+  for (const Scene& s : meshes()) {
+    const World world(s, {});
+    const std::vector<Float3> points = points_around(s, ++seed, kPoints);
+    std::vector<std::uint8_t> inside(points.size());
+    std::vector<float> distances(points.size());
+    contains(world, points, inside, {.inside = InsideRule::kWinding});
+    signed_distances(world, points, distances, {.inside = InsideRule::kWinding});
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const auto expected = static_cast<double>(winding_number(s.geometry.triangles, points[i]));
+      if (std::abs(expected - .5) < 1e-5)
+        continue;
+      EXPECT_EQ(inside[i] != 0, expected > .5) << "mesh " << seed << ", point " << i;
+      EXPECT_EQ(distances[i] < 0, inside[i] != 0 && distances[i] != 0);
+      within += inside[i];
+    }
+  }
+  EXPECT_GT(within, kPoints);
+}
+
+TEST(WindingNumber, HasTheSameBitsByEveryInstructionSetAndGrid) {
+  std::uint64_t seed = 60;
+  for (const Scene& s : open_meshes()) {
+    const World world(s, {}), other(s, {.density = 9}), plain(s, {.grid = false});
+    const std::vector<Float3> points = points_around(s, ++seed, kPoints);
+    std::vector<double> expected(points.size()), numbers(points.size());
+    std::vector<std::uint8_t> expected_inside(points.size()), inside(points.size());
+    winding_numbers(world, points, expected, .01, {.isa = "scalar"});
+    contains(world, points, expected_inside, {.isa = "scalar", .inside = InsideRule::kWinding});
+    const auto expect_same = [&](const World& asked, std::string_view isa) {
+      winding_numbers(asked, points, numbers, .01, {.isa = isa, .threads = 3});
+      contains(asked, points, inside, {.isa = isa, .inside = InsideRule::kWinding});
+      for (std::size_t i = 0; i < points.size(); ++i)
+        EXPECT_EQ(std::bit_cast<std::uint64_t>(numbers[i]),
+                  std::bit_cast<std::uint64_t>(expected[i]))
+            << isa;
+      EXPECT_EQ(inside, expected_inside) << isa;
+    };
+    for (const Variant* variant : variants())
+      if (variant->is_supported())
+        expect_same(world, variant->name);
+    expect_same(other, "best");
+    expect_same(plain, "best");
+  }
+}
+
+/// So near to a triangle that doubles do not tell the side.
+TEST(WindingNumber, KnowsOnWhichSideAPointLies) {
+  Random random(9);
+  int on = 0, above = 0, below = 0;
+  for (int i = 0; i < 3000; ++i) {
+    Float3 corner[3];
+    for (Float3& p : corner)
+      p = at({3, 5, 7}, 1, random.point(1));
+    const bool is_whole = random.chance(.3);  // then points lie in the plane now and then
+    for (Float3& p : corner)
+      if (is_whole)
+        p = {std::floor(p.x), std::floor(p.y), std::floor(p.z)};
+    Float3 p = at(at(corner[0], .4, minus(corner[1], corner[0])), .25, minus(corner[2], corner[0]));
+    if (is_whole)
+      p = at(corner[0], .5, minus(corner[1], corner[0]));
+    const Scene s = one_triangle(corner[0], corner[1], corner[2]);
+    const rational::Vector org(p);
+    const rational::Vector a = rational::Vector(corner[0]) - org,
+                           b = rational::Vector(corner[1]) - org,
+                           c = rational::Vector(corner[2]) - org;
+    const int side = sgn(dot(cross(a, b), c));
+    const double found = grelha::winding_number(World(s, {}), p);
+    EXPECT_EQ((found > 0) - (found < 0), side);
+    if (side != 0 && !is_whole) {
+      EXPECT_NEAR(std::abs(found), .5, 1e-4);
+    }
+    on += side == 0;
+    above += side < 0;
+    below += side > 0;
+  }
+  EXPECT_GT(on, 300);
+  EXPECT_GT(above, 300);
+  EXPECT_GT(below, 300);
+}
+
+TEST(WindingNumber, KnowsASideThatDoublesLose) {
+  const Scene s = one_triangle({-1, -1, -1}, {2, 2, -1}, {-1, -1, 2});
+  const World world(s, {});
+  EXPECT_EQ(grelha::winding_number(world, {}), 0);
+  for (const float beside : {0x1p-20f, 0x1p-60f, 0x1p-140f}) {
+    EXPECT_NEAR(grelha::winding_number(world, {-beside, 0, 0}), .5, 1e-6);
+    EXPECT_NEAR(grelha::winding_number(world, {beside, 0, 0}), -.5, 1e-6);
+    EXPECT_NEAR(grelha::winding_number(world, {0, beside, 0}), .5, 1e-6);
+  }
+}
+
+TEST(WindingNumber, OfOddPoints) {
+  const Scene s = ball_mesh(16, 8);
+  const World world(s, {});
+  EXPECT_TRUE(std::isnan(grelha::winding_number(world, {kNaN, 0, 0})));
+  EXPECT_TRUE(std::isnan(grelha::winding_number(world, {0, kInf, 0})));
+  EXPECT_FALSE(contains(world, {0, -kInf, 0}, InsideRule::kWinding));
+  EXPECT_NEAR(grelha::winding_number(world, {1e18f, 0, 0}), 0, 1e-9);
+  EXPECT_THROW(grelha::winding_number(world, {}, 0), std::invalid_argument);
+  EXPECT_THROW(grelha::winding_number(world, {}, -1), std::invalid_argument);
+  std::vector<double> numbers(3);
+  EXPECT_THROW(winding_numbers(world, std::vector<Float3>(2), numbers), std::invalid_argument);
+  const Scene empty = empty_scene(), ball = one_sphere({1, 0, 0}, 2);
+  EXPECT_EQ(grelha::winding_number(World(empty, {}), {}), 0);
+  EXPECT_TRUE(contains(World(ball, {}), {}, InsideRule::kWinding));
+}
+
+}  // namespace
+}  // namespace grelha::test
