@@ -276,7 +276,8 @@ typedef enum grelha_inside {
   GRELHA_CLOSED = 0,   ///< as GRELHA_ODD, of closed meshes alone
   GRELHA_ODD = 1,      ///< in an odd number of meshes; of an open one, by the crossings of one ray
   GRELHA_NONZERO = 2,  ///< around which closed and oriented meshes wind at all: unions
-  GRELHA_WINDING = 3   ///< with a winding number above 1/2: open meshes, loose triangles
+  /// with a winding number above 1/2, or below -1/2: open meshes, loose triangles
+  GRELHA_WINDING = 3
 } grelha_inside;
 
 /// Tests if points lie inside a sphere, or inside the triangles by a rule: inside[i] is 1 or 0 for

@@ -21,7 +21,7 @@ enum class InsideRule : std::uint8_t {
   kClosed,   ///< as kOdd, of closed meshes alone
   kOdd,      ///< in an odd number of meshes; of an open one, by the crossings of one ray
   kNonzero,  ///< around which closed and oriented meshes wind at all: unions, doubled walls
-  /// with a generalized winding number above 1/2, see winding_number(): open meshes and soups
+  /// with a winding_number() above 1/2, or below -1/2: open meshes, loose triangles
   kWinding
 };
 

@@ -1,6 +1,8 @@
 #pragma once
 // Solid angles of triangles, by + - * / and square roots alone.
 
+#include <initializer_list>
+
 #include "kernel/shapes/crossing.hpp"
 #include "kernel/shapes/triangle.hpp"
 

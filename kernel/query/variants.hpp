@@ -38,7 +38,7 @@ using CrossingSumLoop = void (*)(const SceneView&, const Float3*, std::size_t co
 /// Winding numbers of [count] points, within `error`.
 using WindingLoop = void (*)(
     const WindingTreeView&, const Float3*, std::size_t count, double error, double* numbers);
-/// Whether winding numbers are above 1/2: [count] out, 1 or 0. Numbers that are within
+/// Whether winding numbers are beyond 1/2 or -1/2: [count] out, 1 or 0. Numbers that are within
 /// kLeastWindingError of it decide as they were computed.
 using SortByWindingLoop = void (*)(const WindingTreeView&,
                                    const Float3*,

@@ -132,16 +132,16 @@ inline void winding_numbers(const WindingTreeView& tree,
   }
 }
 
-/// Whether the winding number of a point is above 1/2. A coarse one decides for most.
+/// Whether the size of a point's winding number is above 1/2. A coarse one decides for most.
 inline bool is_wound_around(const WindingTreeView& tree, const double (&p)[3]) {
-  double number = 0;
+  double beyond = 0;
   for (const double allowed : {1., 0x1p-3, 0x1p-7, 0x1p-12, kLeastWindingError}) {
     const WindingSum sum(tree, p, allowed);
-    number = sum.number();
-    if (!(magnitude(number - .5) <= sum.error() + kLeastWindingError))
+    beyond = magnitude(sum.number()) - .5;
+    if (!(magnitude(beyond) <= sum.error() + kLeastWindingError))
       break;
   }
-  return number > .5;
+  return beyond > 0;
 }
 
 /// The same of [count] points: 1 or 0; points with a NaN or an infinity are outside.

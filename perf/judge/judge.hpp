@@ -31,6 +31,9 @@ std::vector<std::pair<std::string, Scene>> closed_meshes(const JudgeOptions& opt
 std::size_t judge_rays(const JudgeOptions& options);
 /// Parity of crossings along five random rays and one through a vertex, and contains().
 std::size_t judge_inside(const JudgeOptions& options);
+/// Insides of closed meshes, overlapping, doubled, inside out and thin, and winding numbers of
+/// these, of open meshes and of loose triangles, against rational numbers and long double.
+std::size_t judge_rules(const JudgeOptions& options);
 /// Signed distances against long double.
 std::size_t judge_distance(const JudgeOptions& options);
 /// Every query about triangles, in every interval and from any distance, against rational numbers.

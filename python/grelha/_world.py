@@ -245,7 +245,8 @@ class World:
                  ray.
                  "nonzero": where closed and oriented meshes wind around the point at all, as those
                  that overlap or lie double do.
-                 "winding": where the winding number is above 1/2; of open meshes and loose faces.
+                 "winding": where the winding number is above 1/2, or below -1/2; of open meshes
+                 and loose faces.
 
         By every rule but "winding" the answer is exact: where the mesh is closed, it does not
         depend on a choice of ray. Returns a bool array of shape (...). Raises ValueError that names

@@ -66,7 +66,7 @@ class Rules(unittest.TestCase):
                     ask(self.points, **rule)
         inside = world.contains(self.points, inside="winding")
         number = world.winding_number(self.points, 1e-6)
-        np.testing.assert_array_equal(inside, number > 0.5)
+        np.testing.assert_array_equal(inside, np.abs(number) > 0.5)
         np.testing.assert_allclose(number, winding(self.vertices, open_faces, self.points),
                                    atol=2e-6)
         distance = world.signed_distance(self.points, inside="winding")

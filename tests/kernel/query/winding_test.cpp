@@ -118,14 +118,14 @@ TEST(WindingNumber, TellsInsideOfOpenMeshes) {
     signed_distances(world, points, distances, {.inside = InsideRule::kWinding});
     for (std::size_t i = 0; i < points.size(); ++i) {
       const auto expected = static_cast<double>(winding_number(s.geometry.triangles, points[i]));
-      if (std::abs(expected - .5) < 1e-5)
+      if (std::abs(std::abs(expected) - .5) < 1e-5)
         continue;
-      EXPECT_EQ(inside[i] != 0, expected > .5) << "mesh " << seed << ", point " << i;
+      EXPECT_EQ(inside[i] != 0, std::abs(expected) > .5) << "mesh " << seed << ", point " << i;
       EXPECT_EQ(distances[i] < 0, inside[i] != 0 && distances[i] != 0);
       within += inside[i];
     }
   }
-  EXPECT_GT(within, kPoints);
+  EXPECT_GT(within, 3 * kPoints);
 }
 
 TEST(WindingNumber, HasTheSameBitsByEveryInstructionSetAndGrid) {
