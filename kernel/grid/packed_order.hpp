@@ -34,7 +34,7 @@ class PackedOrder {
       node /= kBlock;
     if (items.size() <= kBlock && node == 1)
       return;
-    const int across = longest_side(items);
+    const int across = longest_side(std::span<const Item>(items));
     const std::size_t nodes = (items.size() + node - 1) / node;
     const std::size_t middle = nodes / 2 * node;
     const auto before = [across](const Item& a, const Item& b) {
@@ -47,19 +47,18 @@ class PackedOrder {
   }
 
   template <class Item>
-  int longest_side(std::span<Item> items) const {
+  int longest_side(std::span<const Item> items) const {
+    Item lo = items[0], hi = items[0];
+    for (const Item& item : items)
+      for (int a = 0; a < 3; ++a) {
+        lo.at[a] = std::min(lo.at[a], item.at[a]);
+        hi.at[a] = std::max(hi.at[a], item.at[a]);
+      }
+    const auto length = [&](int a) { return static_cast<double>(hi.at[a] - lo.at[a]) * unit_[a]; };
     int longest = 0;
-    double most = -1;
-    for (int a = 0; a < 3; ++a) {
-      const auto [lo, hi] =
-          std::minmax_element(items.begin(), items.end(), [a](const Item& x, const Item& y) {
-            return x.at[a] < y.at[a];
-          });
-      const double length = static_cast<double>(hi->at[a] - lo->at[a]) * unit_[a];
-      if (length > most)
+    for (int a = 1; a < 3; ++a)
+      if (length(a) > length(longest))
         longest = a;
-      most = std::max(most, length);
-    }
     return longest;
   }
 

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""A slice through a closed mesh: what is inside, and how far the surface is.
+"""A slice through a mesh: what is inside, and how far the surface is.
 
 `distance_slice.py [MESH] [-o PICTURE]`. Without a mesh it makes two rings, one through the other.
 The slice lies across z, in the middle. Inside is orange, outside blue; stripes are lines of equal
-distance.
+distance. Of a mesh with holes the winding number tells what is inside.
 """
 import argparse
 
@@ -45,12 +45,15 @@ across = (np.arange(SIDE) + 0.5) / SIDE - 0.5
 x, y = np.meshgrid(middle[0] + size * across, middle[1] - size * across)
 points = np.stack([x, y, np.full_like(x, middle[2])], -1)
 
-distance = world.signed_distance(points)  # negative inside
-assert ((distance < 0) <= world.contains(points)).all()
+mesh = world.check()
+rule = "closed" if mesh.closed else "winding"
+distance = world.signed_distance(points, inside=rule)  # negative inside
+assert ((distance < 0) <= world.contains(points, inside=rule)).all()
 stripes = 0.85 + 0.15 * np.cos(2 * np.pi * STRIPES * distance / size)
 colour = np.where(distance[..., None] < 0, (1, 0.6, 0.2), (0.4, 0.65, 0.9))
 fade = np.exp(-6 * np.abs(distance) / size)
 edge = np.clip(np.abs(distance) / size * SIDE / 1.5, 0, 1)
 grelha.write_image(options.output, colour * (stripes * (0.45 + 0.55 * fade) * edge)[..., None])
-print(f"{(distance < 0).mean():.3f} of the slice is inside; farthest {distance.max():.4f}, "
+print(f"{mesh.open_edges.count} open edges; "
+      f"{(distance < 0).mean():.3f} of the slice is inside; farthest {distance.max():.4f}, "
       f"deepest {-distance.min():.4f}")

@@ -11,13 +11,15 @@ import zlib
 
 import numpy as np
 
+import grelha
+
 RECIPES = pathlib.Path(__file__).resolve().parent.parent / "recipes"
 SCENES = RECIPES.parent.parent / "scenes" / "data"
 SAYS = {
     "sun_hours": r"0\.00 to 1[01]\.\d\d hours of sun",
     "ambient_occlusion": r"0\.[5-9]\d\d of the sky",
     "wall_thickness": r"thinnest 0\.0[0-9]*[1-9]",
-    "distance_slice": r"0\.2\d\d of the slice is inside",
+    "distance_slice": r"0 open edges; 0\.2\d\d of the slice is inside",
     "nested_shells": r"^10748\d\d particles .*: 0 lost, 0 crossings too many",
     "turntable": r"8 pictures of \d+ triangles",
 }
@@ -81,6 +83,21 @@ class Recipes(unittest.TestCase):
         for name in ("ambient_occlusion", "wall_thickness", "distance_slice", "turntable"):
             with self.subTest(name):
                 self.run_recipe(name, SCENES / "torus.ply")
+
+    def test_a_mesh_with_a_hole(self):
+        world = grelha.read(SCENES / "torus.ply").world
+        faces = world.faces[2:]
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "open.ply")
+            rows = [*world.vertices.tolist(), *([3, *face] for face in faces.tolist())]
+            body = "".join(" ".join(map(str, row)) + "\n" for row in rows)
+            path.write_text("ply\nformat ascii 1.0\n"
+                            f"element vertex {len(world.vertices)}\nproperty float x\n"
+                            "property float y\nproperty float z\n"
+                            f"element face {len(faces)}\nproperty list uchar int vertex_indices\n"
+                            "end_header\n" + body)
+            said = self.run_recipe("distance_slice", path)
+        self.assertRegex(said, r"^4 open edges; 0\.[1-9]\d* of the slice is inside")
 
     def test_they_are_short(self):
         for path in RECIPES.glob("*.py"):
