@@ -6,6 +6,7 @@
 #include <exception>
 #include <functional>
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <vector>
 
@@ -71,6 +72,11 @@ class World {
   /// bit for bit. No query may run at the same time. Throws what the constructor throws, and then
   /// leaves the World as it was.
   void update(const SceneSpans& scene, const BuildOptions& options);
+
+  /// The same where the triangles of some objects moved, and nothing else changed: `moved` names
+  /// their ranges. Grids over other objects are shared with the World before, not built, if they
+  /// would have the same cells: mostly while the box around the scene stays as it is.
+  void update(const SceneSpans& scene, const BuildOptions& options, std::span<const Object> moved);
 
   /// Returns the size of each grid: one for the loose primitives and one for each larger object.
   std::vector<GridStats> grids() const;

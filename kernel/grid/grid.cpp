@@ -64,6 +64,12 @@ void Grid::set_axis(GridView& v, int a) const {
   v.inv_cell_f[a] = static_cast<float>(1 / cell[a]);
 }
 
+bool Grid::has_layout_of(const Grid& o) const {
+  return cells == o.cells && pad == o.pad && std::ranges::equal(lo, o.lo) &&
+         std::ranges::equal(cell, o.cell) && stretched == o.stretched &&
+         near_distance == o.near_distance;
+}
+
 GridStats Grid::stats() const {
   return {
       cells,

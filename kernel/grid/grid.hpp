@@ -31,6 +31,8 @@ struct Grid {
 
   GridView view() const;
   GridStats stats() const;
+  /// True if it has the cells of another, and rays walk it alike.
+  bool has_layout_of(const Grid& o) const;
 
  private:
   void set_axis(GridView& v, int a) const;

@@ -87,7 +87,10 @@ void write_color(const Float3& color, float (&channels)[3]) {
 
 }  // namespace
 
-World::Impl::Impl(const SceneSpans& s, const BuildOptions& options)
+World::Impl::Impl(const SceneSpans& s,
+                  const BuildOptions& options,
+                  const Impl* before,
+                  std::span<const Object> moved)
     : scene(completed(s, no_materials)), primitives(scene.geometry), materials(scene) {
   const KeepThreadsAwake awake;
   BuildProgress progress(options.progress);
@@ -95,7 +98,7 @@ World::Impl::Impl(const SceneSpans& s, const BuildOptions& options)
   if (options.most_bytes > 0 && !surely_fits(primitives, options.most_bytes))
     if (const BuildMemory need = memory_of(scene, primitives, plan); need.peak > options.most_bytes)
       throw TooLarge(need);
-  fill(plan, threads_of(options), progress);
+  fill(plan, threads_of(options), progress, before, moved);
   outside = build_list(primitives, plan.apart);
   progress.finish();
   progress.throw_if_cancelled();
@@ -107,8 +110,8 @@ World::Impl::Impl(const SceneSpans& s, const BuildOptions& options)
 
 std::size_t World::Impl::bytes() const {
   std::size_t sum = outside.bytes() + copies.size() * sizeof(Copy);
-  for (const Grid& g : grids)
-    sum += g.stats().bytes;
+  for (const auto& g : grids)
+    sum += g->grid.stats().bytes;
   for_each_shape(
       [&]<class Shape>() { sum += Shape::Source::kSetupBytes * primitives.of<Shape>().size(); });
   return sum;
@@ -131,15 +134,15 @@ void World::Impl::view_copies() {
   add(find_last_copies(scene.geometry.planes));
   view.geometry.of<Plane>().count -= static_cast<std::uint32_t>(copies.size());
   add(outside.copies);
-  for (const Grid& g : grids)
-    add(g.store.copies);
+  for (const auto& g : grids)
+    add(g->grid.store.copies);
   std::sort(copies.begin(), copies.end());
   view.copies = {copies.data(), static_cast<std::uint32_t>(copies.size())};
 }
 
 void World::Impl::view_grids(const Box& all) {
-  for (const Grid& grid : grids)
-    grid_views.push_back(grid.view());
+  for (const auto& g : grids)
+    grid_views.push_back(g->grid.view());
   view.grids = grid_views.data();
   view.grid_count = static_cast<int>(grid_views.size());
   view.finite = !all.empty();
@@ -178,21 +181,44 @@ void World::Impl::set_materials() {
   shading.glossy = materials.glossy;
 }
 
+/// A grid of the same layout over the same primitives, none of which moved; or null.
+std::shared_ptr<const BuiltGrid> World::Impl::find_unmoved(const BuiltGrid& planned,
+                                                           std::span<const Object> moved) const {
+  const std::uint64_t begin = planned.first_id, end = begin + planned.count;
+  const std::uint64_t first_triangle = primitives.ids.begin(PrimitiveKind::kTriangle);
+  for (const Object& o : moved)
+    if (const std::uint64_t first = first_triangle + o.first_triangle;
+        first < end && begin < first + o.triangle_count)
+      return nullptr;
+  for (const auto& built : grids)
+    if (planned.count > 0 && built->first_id == planned.first_id && built->count == planned.count &&
+        built->grid.has_layout_of(planned.grid))
+      return built;
+  return nullptr;
+}
+
 /// The plan's grids, each part's ids gone when they are done with.
-void World::Impl::fill(Plan& plan, int threads, BuildProgress& progress) {
+void World::Impl::fill(Plan& plan,
+                       int threads,
+                       BuildProgress& progress,
+                       const Impl* before,
+                       std::span<const Object> moved) {
   double work = 0;
   for (const GridPlan& part : plan.parts)
     work += static_cast<double>(part.ids.size());
   for (GridPlan& part : plan.parts) {
     const std::vector<std::uint32_t> ids = std::move(part.ids);
     progress.throw_if_cancelled();
-    grids.push_back(std::move(part.grid));
-    fill_grid(primitives,
-              ids,
-              grids.back(),
-              threads,
-              progress,
-              (1 - kPlanShare) * static_cast<double>(ids.size()) / work);
+    const bool in_a_row = ids.back() - ids.front() + 1 == ids.size();
+    BuiltGrid built{
+        std::move(part.grid), ids.front(), in_a_row ? static_cast<std::uint32_t>(ids.size()) : 0};
+    std::shared_ptr<const BuiltGrid> shared = before ? before->find_unmoved(built, moved) : nullptr;
+    if (!shared) {
+      const double share = (1 - kPlanShare) * static_cast<double>(ids.size()) / work;
+      fill_grid(primitives, ids, built.grid, threads, progress, share);
+      shared = std::make_shared<const BuiltGrid>(std::move(built));
+    }
+    grids.push_back(std::move(shared));
   }
 }
 
@@ -215,10 +241,17 @@ void World::update(const SceneSpans& scene, const BuildOptions& options) {
   *this = World(scene, options);
 }
 
+void World::update(const SceneSpans& scene,
+                   const BuildOptions& options,
+                   std::span<const Object> moved) {
+  check(options);
+  impl_ = std::make_unique<Impl>(scene, options, impl_.get(), moved);
+}
+
 std::vector<GridStats> World::grids() const {
   std::vector<GridStats> out;
-  for (const Grid& g : impl_->grids)
-    out.push_back(g.stats());
+  for (const auto& g : impl_->grids)
+    out.push_back(g->grid.stats());
   return out;
 }
 

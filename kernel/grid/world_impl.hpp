@@ -18,11 +18,17 @@ namespace grelha {
 class BuildProgress;
 struct Plan;
 
+/// A grid, and the ids of what it was built over where these follow each other; else `count` is 0.
+struct BuiltGrid {
+  Grid grid;
+  std::uint32_t first_id = 0, count = 0;
+};
+
 struct World::Impl {
   std::vector<std::uint32_t> no_materials;  ///< zeros, for kinds without material indices
   SceneSpans scene;
   Primitives primitives;
-  std::vector<Grid> grids;
+  std::vector<std::shared_ptr<const BuiltGrid>> grids;  ///< an update may share some
   CellStore outside;
   std::vector<Copy> copies;
   std::vector<GridView> grid_views;
@@ -33,12 +39,22 @@ struct World::Impl {
   Lazy<MeshCheck> mesh_check;
   Lazy<WindingTree> winding_tree;
 
-  Impl(const SceneSpans& scene, const BuildOptions& options);
+  /// `before`: what may have grids to be shared, over all but the triangles that moved; or null.
+  Impl(const SceneSpans& scene,
+       const BuildOptions& options,
+       const Impl* before = nullptr,
+       std::span<const Object> moved = {});
   /// Everything built beside the scene.
   std::size_t bytes() const;
 
  private:
-  void fill(Plan& plan, int threads, BuildProgress& progress);
+  std::shared_ptr<const BuiltGrid> find_unmoved(const BuiltGrid& planned,
+                                                std::span<const Object> moved) const;
+  void fill(Plan& plan,
+            int threads,
+            BuildProgress& progress,
+            const Impl* before,
+            std::span<const Object> moved);
   void view_primitives();
   void view_copies();
   void view_grids(const Box& all);

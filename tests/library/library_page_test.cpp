@@ -105,6 +105,13 @@ TEST_F(LibraryPage, Moving) {
   EXPECT_EQ(scene.geometry.triangles.z[7], 3);
 }
 
+TEST_F(LibraryPage, MovingAnObject) {
+  scene.geometry.objects = {{0, 12}};
+  World whole(scene, {});
+  page::lift_object(whole, scene, scene.geometry.objects[0], 0, 8, 2);
+  EXPECT_EQ(closest(whole, down).t, 2);
+}
+
 TEST_F(LibraryPage, Threads) {
   std::atomic<double> done = 0;
   std::atomic<bool> cancelled = false;

@@ -66,7 +66,7 @@ inline RayList rays_on_cells(Random& random, const World& world, int count) {
   if (grids.empty())
     return rays;
   for (int i = 0; i < count; ++i) {
-    const Grid& g = grids[random.below(static_cast<std::uint32_t>(grids.size()))];
+    const Grid& g = grids[random.below(static_cast<std::uint32_t>(grids.size()))]->grid;
     const Line line = line_on_cells(random, g);
     if (line.dir == Float3{})
       continue;

@@ -39,11 +39,12 @@ bool same_grids(const World& a, const World& b) {
   const World::Impl &x = a.impl(), &y = b.impl();
   bool all = same(x.outside, y.outside) && x.grids.size() == y.grids.size();
   for (std::size_t i = 0; all && i < x.grids.size(); ++i)
-    all = same(std::span(x.grids[i].lo), std::span(y.grids[i].lo)) &&
-          same(std::span(x.grids[i].cell), std::span(y.grids[i].cell)) &&
-          x.grids[i].cells == y.grids[i].cells && same(x.grids[i].store, y.grids[i].store) &&
-          same(x.grids[i].distance, y.grids[i].distance) &&
-          x.grids[i].occupied == y.grids[i].occupied;
+    all = same(std::span(x.grids[i]->grid.lo), std::span(y.grids[i]->grid.lo)) &&
+          same(std::span(x.grids[i]->grid.cell), std::span(y.grids[i]->grid.cell)) &&
+          x.grids[i]->grid.cells == y.grids[i]->grid.cells &&
+          same(x.grids[i]->grid.store, y.grids[i]->grid.store) &&
+          same(x.grids[i]->grid.distance, y.grids[i]->grid.distance) &&
+          x.grids[i]->grid.occupied == y.grids[i]->grid.occupied;
   return all;
 }
 

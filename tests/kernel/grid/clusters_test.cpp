@@ -15,7 +15,8 @@ TEST(Clusters, GetCellsOfTheirOwnSize) {
   const Scene scene = towns_in_a_desert(5, 6000);
   const World world(scene, {});
   std::size_t most = 0;
-  for (const Grid& g : world.impl().grids) {
+  for (const auto& built : world.impl().grids) {
+    const Grid& g = built->grid;
     const auto& first = g.store.of<Sphere>().first;
     for (std::size_t c = 0; c + 1 < first.size(); ++c)
       most = std::max<std::size_t>(most, first[c + 1] - first[c]);

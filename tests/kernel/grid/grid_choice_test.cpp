@@ -88,7 +88,8 @@ TEST(Pads, HoldWhatRoundingTakes) {
   constexpr double kLeast = 202 * 0x1p-24;
   for (const Case& c : cases()) {
     const World world(c.scene, {});
-    for (const Grid& g : world.impl().grids) {
+    for (const auto& built : world.impl().grids) {
+      const Grid& g = built->grid;
       EXPECT_GE(g.pad, kLeast * g.near_distance) << c.name;
       for (int a = 0; a < 3; ++a) {
         EXPECT_GE(g.near_distance, .99 * g.cell[a] * g.cells[static_cast<std::size_t>(a)])
@@ -105,7 +106,8 @@ TEST(BlockBoxes, HoldWhatLiesInTheirCell) {
     const World world(c.scene, {.density = 1});
     const World::Impl& w = world.impl();
     Random random(13);
-    for (const Grid& g : w.grids) {
+    for (const auto& built : w.grids) {
+      const Grid& g = built->grid;
       const ListStore<Triangle>& s = g.store.of<Triangle>();
       if (s.first.empty())
         continue;
@@ -161,7 +163,8 @@ TEST(BlockBoxes, StandInNoMoreRowsThanTheyFill) {
   std::size_t begun = 0, gaps = 0;  // cells that begin within a row; places without a block
   for (const Case& c : cases()) {
     const World world(c.scene, {.density = 1});
-    for (const Grid& g : world.impl().grids) {
+    for (const auto& built : world.impl().grids) {
+      const Grid& g = built->grid;
       const ListStore<Triangle>& s = g.store.of<Triangle>();
       for (std::size_t cell = 0; cell + 1 < s.first.size(); ++cell) {
         const auto [first, end] = s.list().blocks_of(cell);
@@ -322,11 +325,11 @@ TEST(GridChoice, WhatIsSmallInAVastSceneHasOneGridAsIfAlone) {
   const Scene vast = mesh_in_a_vast_scene();
   const World world(vast, {});
   ASSERT_EQ(world.impl().grids.size(), 1u);
-  const Grid& g = world.impl().grids[0];
+  const Grid& g = world.impl().grids[0]->grid;
   EXPECT_LE(g.pad, g.cell[0] / 32);
   Scene alone = empty_scene();
   add_object(alone, ball_mesh(24, 12, .2));
-  EXPECT_EQ(g.cells, World(alone, {}).impl().grids[0].cells);
+  EXPECT_EQ(g.cells, World(alone, {}).impl().grids[0]->grid.cells);
   for (const float half : {100.f, 1e3f, 1e5f}) {
     const Scene crowd = crowd_on_a_plain(3, 300, half);
     EXPECT_EQ(World(crowd, {}).grids().size(), 1u) << half;

@@ -141,7 +141,8 @@ TEST(GridRows, HoldWhatTheyPromise) {
       for (const std::uint32_t id : ids_of(w.outside, 0)) {
         ++held_by[id];
       }
-      for (const Grid& g : w.grids) {
+      for (const auto& built : w.grids) {
+        const Grid& g = built->grid;
         const std::size_t cells = std::size_t{g.cells[0]} * g.cells[1] * g.cells[2];
         expect_sound_rows(g.store, cells);
         std::vector<std::uint8_t> occupied(cells);
@@ -179,7 +180,8 @@ TEST(GridRows, HoldAPrimitiveInEachCellItsSurfaceTouches) {
       const World world(c.scene, {.density = density});
       const World::Impl& w = world.impl();
       Random random(11);
-      for (const Grid& g : w.grids) {
+      for (const auto& built : w.grids) {
+        const Grid& g = built->grid;
         std::vector<std::vector<std::uint32_t>> rows(std::size_t{g.cells[0]} * g.cells[1] *
                                                      g.cells[2]);
         std::set<std::uint32_t> members;
@@ -216,7 +218,8 @@ bool is_within(const BlockBoxes& row, int k, const BlockBoxes& outer, int of) {
 TEST(BoxLevels, HoldEachCellOnceAndBoundWhatIsBelow) {
   for (const Scene& scene : {ball_mesh(200, 100), random_mixture(3, 5000), stacked_sheets(400)}) {
     const World world(scene, {});
-    for (const Grid& g : world.impl().grids) {
+    for (const auto& built : world.impl().grids) {
+      const Grid& g = built->grid;
       const BoxLevels& levels = g.levels;
       std::set<std::uint32_t> cells(levels.cells.begin(), levels.cells.end());
       EXPECT_EQ(cells.size(), levels.cells.size());

@@ -11,6 +11,7 @@
 #include "grelha/all_hits.hpp"
 #include "grelha/distance.hpp"
 #include "grelha/owning_world.hpp"
+#include "kernel/grid/world_impl.hpp"
 #include "tests/support/brute_force.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/same_grids.hpp"
@@ -219,6 +220,63 @@ TEST(Update, OfMeshesThatCollapseAndReturn) {
     world.update(s, {});
     EXPECT_TRUE(same_grids(world, World(s, {}))) << by;
   }
+}
+
+/// Meshes of their own grids within a box that stays; two are too small for that.
+Scene meshes_in_a_box() {
+  Scene s = empty_scene();
+  add_triangle(s, {-9, -9, -9}, {9, -9, -9}, {9, 9, 9});
+  for (int i = 0; i < 6; ++i) {
+    const Scene mesh = ball_mesh(i < 4 ? 24 : 6, i < 4 ? 12 : 4, .1, static_cast<std::uint64_t>(i));
+    add_object(s, mesh);
+    for (std::size_t v = s.geometry.triangles.x.size() - 3 * mesh.geometry.triangles.size();
+         v < s.geometry.triangles.x.size();
+         ++v)
+      s.geometry.triangles.x[v] += static_cast<float>(2 * i - 5);
+  }
+  return s;
+}
+
+/// The blocks of each grid, where they lie in memory.
+std::vector<const void*> stores(const World& world) {
+  std::vector<const void*> all;
+  for (int i = 0; i < world.impl().view.grid_count; ++i)
+    all.push_back(world.impl().view.grids[i].lists.of<Triangle>().blocks);
+  return all;
+}
+
+TEST(Update, OfOneObjectBuildsItsGridAlone) {
+  Scene s = meshes_in_a_box();
+  World world(s, {});
+  Random random(8);
+  std::size_t shared = 0;
+  for (int step = 0; step < 40; ++step) {
+    const Object moved = s.geometry.objects[random.below(6)];
+    const bool leaves = step % 10 == 9;  // the box of the scene, and all grids are built
+    for (std::uint32_t v = 3 * moved.first_triangle;
+         v < 3 * (moved.first_triangle + moved.triangle_count);
+         ++v)
+      s.geometry.triangles.y[v] += leaves ? 20.f : .01f * static_cast<float>(random.below(20));
+    const std::vector<const void*> before = stores(world);
+    world.update(s, {}, {&moved, 1});
+    EXPECT_TRUE(same_grids(world, World(s, {}))) << step;
+    const std::vector<const void*> after = stores(world);
+    ASSERT_EQ(before.size(), after.size());
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < after.size(); ++i)
+      kept += before[i] == after[i];
+    EXPECT_LT(kept, after.size());
+    shared += kept;
+  }
+  EXPECT_GT(shared, 60u);
+}
+
+TEST(Update, OfObjectsBuildsAllWhereIdsChange) {
+  Scene s = meshes_in_a_box();
+  World world(s, {});
+  s.geometry.spheres.add({0, 0, 0}, 1, 0);
+  world.update(s, {}, {});
+  EXPECT_TRUE(same_grids(world, World(s, {})));
 }
 
 TEST(Update, LeavesTheWorldWhereItThrows) {
