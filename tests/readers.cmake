@@ -17,6 +17,7 @@ grelha_test(frontend/ply/ply_reader unit grelha::frontend)
 target_sources(ply_reader_test PRIVATE frontend/ply/ply_alone_test.cpp
   frontend/ply/ply_triangles_test.cpp)
 grelha_test(frontend/input/default_view unit grelha::frontend)
+target_sources(default_view_test PRIVATE frontend/input/view_test.cpp)
 grelha_test(frontend/input/errors unit grelha::frontend)
 grelha_test(frontend/commands/nothing_seen unit grelha::frontend)
 grelha_test(frontend/input/real_scenes unit grelha::frontend)

@@ -12,7 +12,7 @@ constexpr std::size_t kColumns = 80, kIndent = 22;
 
 /// The options asked for most; a command with few options shows them all.
 constexpr std::size_t kFewOptions = 10;
-constexpr std::array<std::string_view, 10> kCommon{"--output",
+constexpr std::array<std::string_view, 11> kCommon{"--output",
                                                    "--size",
                                                    "--samples",
                                                    "--error",
@@ -20,7 +20,8 @@ constexpr std::array<std::string_view, 10> kCommon{"--output",
                                                    "--shadows",
                                                    "--lens",
                                                    "--glossy",
-                                                   "--depth",
+                                                   "--orbit",
+                                                   "--json",
                                                    "--threads"};
 
 /// `left` in its column and `text` behind it, wrapped.

@@ -120,7 +120,8 @@ int run(const RenderCommand& command, Ranks& ranks) {
 std::string info_of(const std::string& scene, const InfoCommand& command) {
   const bool bars = stderr_is_terminal();
   WarningLog log;
-  const SceneFile file = load_scene(scene, log.reporting(), command.input.read, bars);
+  SceneFile file = load_scene(scene, log.reporting(), command.input.read, bars);
+  apply_view(command.input.view, file);
   warn_empty_scene(scene, file, log.reporting());
   log.check_none(command.input);
   const SceneMemory memory = memory_of(file, command.build);

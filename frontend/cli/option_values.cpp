@@ -75,6 +75,10 @@ double not_negative(const std::string& option, const std::string& text, const ch
   return fitting<double>(option, text, expected, [](double v) { return v >= 0 && v <= kLargest; });
 }
 
+bool is_coordinate(double value) {
+  return std::abs(value) <= kLargest;
+}
+
 template <class T>
 bool is_share(T value) {
   return value >= 0 && value <= 1;
@@ -236,6 +240,44 @@ void parse_samples(const std::string& text, RenderCommand& command) {
     command.effects.samples = whole("--samples", text.substr(slash + 1), 1, kMostSamples);
   command.work.samples =
       range("--samples", text.substr(0, slash), command.effects.samples.value_or(kMostSamples));
+}
+
+std::array<double, 3> point(const std::string& option, const std::string& text) {
+  const auto p = parts(option, text, 3, 3, "X,Y,Z");
+  std::array<double, 3> numbers{};
+  for (std::size_t i = 0; i < 3; ++i)
+    numbers[i] = fitting<double>(option, p[i], "numbers X,Y,Z within 1e18", is_coordinate);
+  return numbers;
+}
+
+double angle(const std::string& text) {
+  const auto fits = [](double v) { return v > 0 && v < 180; };
+  return fitting<double>("--angle", text, "degrees between 0 and 180", fits);
+}
+
+double picture_height(const std::string& text) {
+  const auto fits = [](double v) { return v > 0 && v <= kLargest; };
+  return fitting<double>("--orthographic", text, "a height above 0 and up to 1e18", fits);
+}
+
+Orbit orbit(const std::string& text) {
+  constexpr const char* kExpected = "AZIMUTH,ELEVATION or AZIMUTH,ELEVATION,ZOOM";
+  const auto p = parts("--orbit", text, 2, 3, kExpected);
+  const auto turn = [](double v) { return std::abs(v) <= kMostTurn; };
+  const auto is_zoom = [](double v) { return v >= kLeastZoom && v <= kMostZoom; };
+  return {fitting<double>("--orbit", p[0], "degrees, at most 100 turns", turn),
+          fitting<double>("--orbit", p[1], "degrees, at most 100 turns", turn),
+          p.size() < 3 ? 1 : fitting<double>("--orbit", p[2], "a zoom of .001 to 1000", is_zoom)};
+}
+
+Float3 color(const std::string& option, const std::string& text) {
+  const auto p = parts(option, text, 1, 3, "R,G,B or one number");
+  if (p.size() == 2)
+    reject(option, "R,G,B or one number", text);
+  const auto channel = [&](std::size_t i) {
+    return float(not_negative(option, p[std::min(i, p.size() - 1)], "light"));
+  };
+  return {channel(0), channel(1), channel(2)};
 }
 
 double interval(const std::string& option, const std::string& text) {

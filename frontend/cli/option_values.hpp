@@ -37,6 +37,12 @@ void parse_size(const std::string& text, int& width, int& height);
 Range range(const std::string& option, const std::string& text, int most);
 /// "N", "I:J" or "I:J/N"
 void parse_samples(const std::string& text, RenderCommand& command);
+std::array<double, 3> point(const std::string& option, const std::string& text);
+double angle(const std::string& text);
+double picture_height(const std::string& text);
+Orbit orbit(const std::string& text);
+/// "R,G,B", or one number for all three.
+Float3 color(const std::string& option, const std::string& text);
 /// Seconds.
 double interval(const std::string& option, const std::string& text);
 

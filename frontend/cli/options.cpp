@@ -18,6 +18,7 @@ constexpr int kMaxThreads = 1024;
 using Word = std::pair<std::string_view, int>;
 using Name = std::pair<std::string_view, std::string_view>;
 constexpr std::array kAccelerators{Word{"grid", 1}, Word{"none", 0}};
+constexpr std::array kLightHolders{Word{"camera", 1}, Word{"mesh", 0}};
 constexpr std::array kPackets{Word{"1", 1}, Word{"16", 16}, Word{"64", 64}, Word{"256", 256}};
 constexpr std::array kIsas{Name{"scalar", "scalar"},
                            Name{"sse2", "sse2"},
@@ -66,6 +67,48 @@ void add_input_options(CLI::App& app, InputOptions& input) {
   app.add_flag("--strict",
                input.strict,
                "take a warning for an error: exit status 2; 3 where --error is not met");
+}
+
+/// Adds the options for the camera and what follows it.
+void add_view(CLI::App& app, ViewOptions& view) {
+  constexpr char kGroup[] = "View";
+  const auto place = [&](const char* name, const char* help, ViewOptions::Point& of) {
+    value(app, name, "X,Y,Z", help, [name, &of](const std::string& text) {
+      of = point(name, text);
+    })->group(kGroup);
+  };
+  place("--eye", "where the camera is [as the scene says; info prints it]", view.eye);
+  place("--at", "the point it looks at", view.at);
+  place("--up", "the direction that is up", view.up);
+  value(app, "--angle", "DEG", "vertical field of view", [&view](const std::string& text) {
+    view.angle_deg = angle(text);
+  })->group(kGroup);
+  value(app,
+        "--orbit",
+        "A,E,Z",
+        "degrees to the right, degrees up (180,0: behind), zoom [1]",
+        [&view](const std::string& text) { view.orbit = orbit(text); })
+      ->group(kGroup);
+  value(app,
+        "--orthographic",
+        "HEIGHT",
+        "parallel rays, and how much the picture shows, scene units",
+        [&view](const std::string& text) { view.orthographic_height = picture_height(text); })
+      ->group(kGroup);
+  value(app,
+        "--background",
+        "R,G,B",
+        "light of rays that hit nothing; 1 is white",
+        [&view](const std::string& text) { view.background = color("--background", text); })
+      ->group(kGroup);
+  value(app,
+        "--lights",
+        "camera|mesh",
+        "what the lights of a bare mesh stay with when the camera moves [camera]",
+        [&view](const std::string& text) {
+          view.lights_follow = choice("--lights", text, kLightHolders) == 1;
+        })
+      ->group(kGroup);
 }
 
 void add_build_options(CLI::App& app, BuildOptions& build) {
@@ -256,6 +299,7 @@ void add_render(CLI::App& app, RenderCommand& command) {
   add_sample_counts(sub, command);
   add_sample_locations(sub, command.effects);
   add_effects(sub, command.effects);
+  add_view(sub, command.input.view);
   add_build_options(sub, command.build);
   add_traversal(sub, command);
   value(sub,
@@ -275,6 +319,7 @@ void add_info(CLI::App& app, InfoCommand& command) {
   positional(sub, "SCENE", command.scenes, "scene files, or folders of them");
   sub.footer("Example: grelha info scenes/data/balls.nff --json");
   sub.add_flag("--json", command.json, "as JSON");
+  add_view(sub, command.input.view);
   add_input_options(sub, command.input);
   add_build_options(sub, command.build);
 }

@@ -138,6 +138,7 @@ class SceneRender {
       prepare_outputs(command_);
     file_ = load_scene(command_.scene, log_.reporting(), command_.input.read, bars_);
     check_not_read(outputs_of(command_), file_.meshes);
+    apply_view(command_.input.view, file_);
   }
 
   /// Applies the effects of the command to the scene, before rendering.

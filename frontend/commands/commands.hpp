@@ -13,6 +13,7 @@
 
 #include "frontend/images/image_style.hpp"
 #include "frontend/input/effects.hpp"
+#include "frontend/input/view.hpp"
 #include "frontend/scene/scene_file.hpp"
 #include "grelha/part.hpp"
 #include "grelha/render.hpp"
@@ -33,9 +34,10 @@ struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Options of reading a scene that may be anyone's.
+/// Options of reading a scene that may be anyone's, and of how it is seen.
 struct InputOptions {
   ReadOptions read;
+  ViewOptions view;
   bool strict = false;           ///< a warning is an error
   std::uint64_t max_memory = 0;  ///< bytes; 0: as much as the machine has
 };

@@ -1,26 +1,9 @@
 #include "frontend/commands/first_hits.hpp"
 
-#include <cmath>
-
-#include "kernel/scene/frame.hpp"
 #include "grelha/query.hpp"
 
 namespace grelha {
 namespace {
-
-/// The rays of one row of pixels, as the kernel's camera_rays() sends them.
-void aim(const FrameView& frame, int y, std::vector<Ray>& rays) {
-  const float sy = .5f * float(frame.height) - (float(y) + .5f);
-  for (std::size_t x = 0; x < rays.size(); ++x) {
-    const float sx = (float(x) + .5f) - .5f * float(frame.width);
-    float d[3];
-    for (int k = 0; k < 3; ++k)
-      d[k] = (frame.forward[k] + sx * frame.right[k]) + sy * frame.up[k];
-    const float length = std::sqrt((d[0] * d[0] + d[1] * d[1]) + d[2] * d[2]);
-    rays[x].org = {frame.eye[0], frame.eye[1], frame.eye[2]};
-    rays[x].dir = {d[0] / length, d[1] / length, d[2] / length};
-  }
-}
 
 /// Turns a normal towards the side that the ray comes from.
 Float3 facing(const Float3& normal, const Float3& direction) {
@@ -34,8 +17,7 @@ Layers first_hits(const World& world,
                   const Camera& camera,
                   const Frame& frame_of_scene,
                   const LayerChoice& wanted) {
-  const FrameView frame = make_frame(camera);
-  std::vector<Ray> rays(std::size_t(frame.width));
+  std::vector<Ray> rays(std::size_t(camera.width));
   std::vector<Hit> hits(rays.size());
   const std::size_t pixels = rays.size() * std::size_t(camera.height);
   Layers layers;
@@ -46,7 +28,7 @@ Layers first_hits(const World& world,
   if (wanted.id)
     layers.id.reserve(pixels);
   for (int y = 0; y < camera.height; ++y) {
-    aim(frame, y, rays);
+    camera_rays(camera, y, rays);
     closest(world, rays, hits);
     for (std::size_t x = 0; x < rays.size(); ++x) {
       const Hit& hit = hits[x];

@@ -187,6 +187,13 @@ std::string memory_text(const SceneMemory& memory) {
       double(memory.grids) / 1e6);
 }
 
+std::string view_text(const SceneFile& file) {
+  std::string text;
+  for (const std::string& line : lines_of(view_of(file), file.frame))
+    text += (text.empty() ? "view          " : "              ") + line + '\n';
+  return text;
+}
+
 std::string grid_text(const GridStats& grid) {
   return print("grid          %u x %u x %u cells, %llu occupied, %llu references, %.1f MB\n",
                grid.cells[0],
@@ -291,6 +298,12 @@ std::string info_json(const SceneFile& file,
   json["mesh"] = grids && file.counts.ply > 0 ? mesh_json(file) : nullptr;
   for (const auto& [name, needed] : needs_of(file))
     json["needs"][name] = needed;
+  const Camera& camera = file.camera;
+  json["view"] = {{"eye", file.frame.outside(camera.eye)},
+                  {"at", file.frame.outside(camera.at)},
+                  {"up", to_json(camera.up)},
+                  {"angle", camera.angle_deg},
+                  {"orthographic", camera.orthographic_height / file.frame.scale}};
   json["made_up"] = {{"camera", file.default_camera}, {"light", file.default_light}};
   return text_of(json) + '\n';
 }
@@ -317,6 +330,7 @@ std::string info_text(const std::string& path,
           (file.default_light ? " (and made-up ones)\n" : "\n");
   if (file.box_order != BoxOrder::kNone)
     text += std::string("aabb          read as ") + box_order_name(file.box_order) + '\n';
+  text += view_text(file);
   text += "materials     " + std::to_string(file.counts.materials) + '\n';
   text += bounds_text(file.frame, bounds_of(g));
   if (file.frame != Frame{})

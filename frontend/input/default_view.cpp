@@ -1,5 +1,8 @@
 #include "frontend/input/default_view.hpp"
 
+#include "frontend/input/view.hpp"
+#include "frontend/scene/double3.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,16 +12,10 @@
 namespace grelha {
 namespace {
 
-using Point3 = std::array<double, 3>;
+using Point3 = Double3;
 
-double dot_of(const Point3& a, const Point3& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 Point3 moved(const Point3& a, double share, const Point3& b) {
   return {a[0] + share * b[0], a[1] + share * b[1], a[2] + share * b[2]};
-}
-Float3 as_floats(const Point3& v) {
-  return {float(v[0]), float(v[1]), float(v[2])};
 }
 
 /// Returns the vertices that triangles use; others may lie anywhere.
@@ -92,7 +89,6 @@ struct Axes {
   }
 };
 constexpr double kAngleDeg = 30, kTangentOfHalf = 0.2679491924311227;
-constexpr double kFilled = .9;  ///< of the picture's height or width
 
 /// How far points reach to both sides of a pyramid's axis, along which the eye looks, when its
 /// sides have a slope: |x| <= slope (d - back).
@@ -122,13 +118,13 @@ void add_default_view(SceneFile& file) {
   Axes axes;
   if (is_on_z(points))
     axes.turn();
-  constexpr double slope = kFilled * kTangentOfHalf;
+  constexpr double slope = kFilledByMesh * kTangentOfHalf;
   Extent across, upward;
   double front = -1e300, behind = 1e300;
   for (const Point3& p : points) {
-    const double back = dot_of(p, axes.back);
-    across.add(dot_of(p, axes.right), back, slope);
-    upward.add(dot_of(p, axes.up), back, slope);
+    const double back = dot(p, axes.back);
+    across.add(dot(p, axes.right), back, slope);
+    upward.add(dot(p, axes.up), back, slope);
     front = std::max(front, back);
     behind = std::min(behind, back);
   }
@@ -142,18 +138,14 @@ void add_default_view(SceneFile& file) {
       moved(moved(moved({0, 0, 0}, across.middle(), axes.right), upward.middle(), axes.up),
             middle,
             axes.back);
-  const auto position = [&](double to_back, double to_right, double up) {
-    return as_floats(
-        moved(moved(moved(at, distance * to_back, axes.back), distance * to_right, axes.right),
-              distance * up,
-              axes.high));
-  };
-  file.camera = {position(1, 0, 0), as_floats(at), as_floats(axes.high), kAngleDeg, 512, 512};
-  // Key light above the left shoulder, fill from the eye, which reaches all it sees, and one from
-  // behind on the edges.
-  file.scene.lights = {{position(1, -0.55, 0.65), {0.82f, 0.78f, 0.70f}, {}, {}},
-                       {position(1, 0, 0), {0.30f, 0.32f, 0.37f}, {}, {}},
-                       {position(-0.6, 0.8, 0.6), {0.34f, 0.38f, 0.44f}, {}, {}}};
+  const Point3 eye = moved(at, distance, axes.back);
+  file.camera.eye = in_floats(eye);
+  file.camera.at = in_floats(at);
+  file.camera.up = in_floats(axes.high);
+  file.camera.angle_deg = kAngleDeg;
+  for (const Point3& p : points)
+    file.reach = std::max(file.reach, length(moved(p, -1, at)));
+  file.scene.lights = lights_around(file.camera);
   file.scene.background = {0.62f, 0.68f, 0.76f};
   file.default_camera = file.default_light = true;
 }

@@ -1,9 +1,9 @@
 #include "frontend/input/effects.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
+#include "frontend/scene/double3.hpp"
 #include "grelha/scene_spans.hpp"
 
 namespace grelha {
@@ -12,13 +12,8 @@ namespace {
 constexpr int kSamplesOfEffects = 16;
 constexpr int kSamplesOfMeshes = 16;  ///< alone, whose edges are all there is to see
 
-double length(const Float3& a, const Float3& b) {
-  const double x = double(a.x) - b.x, y = double(a.y) - b.y, z = double(a.z) - b.z;
-  return std::sqrt(x * x + y * y + z * z);
-}
-
 void apply_lens(const Effects& effects, const LensHint& hint, Camera& camera) {
-  const double to_at = length(camera.eye, camera.at);
+  const double to_at = length(difference(camera.eye, camera.at));
   double aperture = hint.present ? hint.aperture : 0,
          focus = hint.present ? hint.focal * to_at : to_at;
   if (effects.lens) {
@@ -28,14 +23,16 @@ void apply_lens(const Effects& effects, const LensHint& hint, Camera& camera) {
   }
   // The course's measure: pixels of the view plane, which lies at the point looked at and has the
   // scene's own resolution.
-  camera.aperture = aperture > 0 && focus > 0 ? aperture * (to_at * pixel_size(camera)) : 0;
+  const double pixel =
+      camera.orthographic_height > 0 ? pixel_size(camera) : to_at * pixel_size(camera);
+  camera.aperture = aperture > 0 && focus > 0 ? aperture * pixel : 0;
   camera.focus = focus > 0 ? focus : 1;
 }
 
 /// A point light becomes a square facing the point looked at.
 void make_square(Light& light, const Float3& at, float size) {
-  const Float3 d{at.x - light.position.x, at.y - light.position.y, at.z - light.position.z};
-  const double n = length(light.position, at);
+  const Float3 d = at - light.position;
+  const double n = length(difference(light.position, at));
   const double z[3] = {n > 0 ? d.x / n : 0, n > 0 ? d.y / n : 0, n > 0 ? d.z / n : 1};
   // Any two directions across do; these are the ones nearest to the axes (Duff et al. 2017).
   const double sign = z[2] < 0 ? -1 : 1, a = -1 / (sign + z[2]), b = z[0] * z[1] * a;

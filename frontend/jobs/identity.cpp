@@ -86,6 +86,8 @@ std::string scene_digest(const SceneFile& file) {
     take_all(digest, l.position, l.color, l.edge1, l.edge2);
   take_all(digest, file.scene.background, file.camera.eye, file.camera.at, file.camera.up);
   digest.numbers(std::span(&file.camera.angle_deg, 1));
+  if (file.camera.orthographic_height > 0)
+    digest.numbers(std::span(&file.camera.orthographic_height, 1));
   return digest.hex();
 }
 

@@ -1,5 +1,6 @@
 #include "frontend/nff/nff_lights.hpp"
 
+#include "frontend/scene/double3.hpp"
 #include "frontend/scene/scene_builder.hpp"
 
 #include <algorithm>
@@ -22,11 +23,8 @@ Float3 framed_point(const Frame& frame, const std::vector<NumberWord>& n, std::s
 Float3 vector(const Frame& frame, const std::vector<NumberWord>& n, std::size_t first) {
   return framed_point({{}, frame.scale}, n, first);
 }
-double length(const Float3& a) {
-  return std::sqrt(double(a.x) * a.x + double(a.y) * a.y + double(a.z) * a.z);
-}
 Float3 unit(const Float3& a) {
-  const double l = length(a);
+  const double l = length(in_double(a));
   return l > 0 ? Float3{float(a.x / l), float(a.y / l), float(a.z / l)} : Float3{0, 0, 1};
 }
 
@@ -153,7 +151,8 @@ bool NffLights::read_glowing(NffInput& input, std::string_view keyword) {
   }
   const auto& [a, b, c, d] = corners;
   const Float3 across = c - a, gap = (b + d) - (a + c);
-  if (size != 4 || !is_finite_float(across) || !(length(gap) <= 1e-3 * length(across))) {
+  if (size != 4 || !is_finite_float(across) ||
+      !(length(in_double(gap)) <= 1e-3 * length(in_double(across)))) {
     input.words.go_on_at(before);
     input.warn_once("glowing polygon",
                     keyword,

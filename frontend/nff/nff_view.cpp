@@ -1,18 +1,9 @@
 #include "frontend/nff/nff_view.hpp"
 
-#include <cmath>
+#include "frontend/scene/double3.hpp"
 
 namespace grelha {
 namespace {
-
-struct Direction {
-  double x, y, z;
-  double length() const { return std::sqrt(x * x + y * y + z * z); }
-};
-
-Direction cross(const Direction& a, const Direction& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
 
 int pixels(NffInput& input) {
   const std::string_view word = input.words.next();
@@ -114,18 +105,15 @@ Camera NffView::finish(NffInput& input, std::string_view end) const {
   if (resolution_.empty())
     input.warn_once("resolution", start, "the view has no resolution; 512 512 is taken");
 
-  const Direction view{double(camera_.at.x) - camera_.eye.x,
-                       double(camera_.at.y) - camera_.eye.y,
-                       double(camera_.at.z) - camera_.eye.z};
-  const Direction up{camera_.up.x, camera_.up.y, camera_.up.z};
-  if (view.length() == 0)
+  const Double3 view = difference(camera_.at, camera_.eye), up = in_double(camera_.up);
+  if (length(view) == 0)
     throw ParseError(input.position(at_),
                      "expected a point to look at apart from the eye, found the same point");
-  if (up.length() == 0)
+  if (length(up) == 0)
     throw ParseError(input.position(up_), "expected an up direction, found 0 0 0");
   // Floats of a nearly parallel pair leave no digits for the picture's horizon below about 1e-6.
   constexpr double kLeastSine = 1e-6;
-  if (!(cross(view, up).length() > kLeastSine * view.length() * up.length()))
+  if (!(length(cross(view, up)) > kLeastSine * length(view) * length(up)))
     throw ParseError(input.position(up_),
                      "expected an up direction that is not along the view, found one that is");
   return camera_;

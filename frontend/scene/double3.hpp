@@ -10,6 +10,12 @@ namespace grelha {
 /// A vector in double: differences of nearby floats are exact in it.
 using Double3 = std::array<double, 3>;
 
+inline Double3 in_double(const Float3& v) {
+  return {v.x, v.y, v.z};
+}
+inline Float3 in_floats(const Double3& v) {
+  return {float(v[0]), float(v[1]), float(v[2])};
+}
 /// From b to a.
 inline Double3 difference(const Float3& a, const Float3& b) {
   return {double(a.x) - b.x, double(a.y) - b.y, double(a.z) - b.z};

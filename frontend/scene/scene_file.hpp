@@ -67,6 +67,7 @@ struct SceneFile {
   std::uint64_t source_bytes = 0;
   std::vector<std::string> meshes;                     ///< files it named
   bool default_camera = false, default_light = false;  ///< made up, for a bare PLY
+  double reach = 0;  ///< how far a bare mesh reaches from the point that its camera looks at
 };
 
 /// Called with one line per warning, `file:line:column: warning: ...`.

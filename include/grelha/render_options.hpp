@@ -3,8 +3,11 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string_view>
+#include <vector>
 
+#include "grelha/geometry.hpp"
 #include "grelha/phase.hpp"
 #include "grelha/subdivision.hpp"
 
@@ -59,6 +62,12 @@ struct RefineOptions {
   bool on() const { return error > 0 || seconds > 0 || samples > 0; }
 };
 
+/// Lights, and the radiance of rays that hit nothing.
+struct Lighting {
+  std::vector<Light> lights;
+  Float3 background;
+};
+
 /// All options of a render.
 struct RenderOptions {
   int threads = 0;  ///< 0: one per processor
@@ -75,6 +84,8 @@ struct RenderOptions {
   std::string_view isa = "best";
   SampleOptions sampling;
   RefineOptions refine;
+  /// in place of the scene's, for pictures of one World in several lights; absent: the scene's
+  std::optional<Lighting> lighting;
   bool phases = false;           ///< measure the time spent in each phase
   Observer* observer = nullptr;  ///< called at each change of phase, instead of measuring.
   /// on: pixels are averages of lattice points, with `samples` rays through each point; one ray

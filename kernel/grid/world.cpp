@@ -79,19 +79,16 @@ SceneSpans completed(SceneSpans scene, std::vector<std::uint32_t>& zeros) {
   return scene;
 }
 
-void write_color(const Float3& color, float (&channels)[3]) {
-  channels[0] = color.x;
-  channels[1] = color.y;
-  channels[2] = color.z;
-}
-
 }  // namespace
 
 World::Impl::Impl(const SceneSpans& s,
                   const BuildOptions& options,
                   const Impl* before,
                   std::span<const Object> moved)
-    : scene(completed(s, no_materials)), primitives(scene.geometry), materials(scene) {
+    : scene(completed(s, no_materials)),
+      primitives(scene.geometry),
+      materials(scene),
+      lights(scene.lights, scene.background) {
   const KeepThreadsAwake awake;
   BuildProgress progress(options.progress);
   Plan plan = plan_grids(primitives, options, progress);
@@ -104,8 +101,8 @@ World::Impl::Impl(const SceneSpans& s,
   progress.throw_if_cancelled();
   view_primitives();
   view_grids(plan.all);
-  set_lights();
   set_materials();
+  lights.show(materials, shading);
 }
 
 std::size_t World::Impl::bytes() const {
@@ -152,21 +149,6 @@ void World::Impl::view_grids(const Box& all) {
     view.box_lo[a] = static_cast<float>(all.lo[a]);
     view.box_hi[a] = static_cast<float>(all.hi[a]);
   }
-}
-
-void World::Impl::set_lights() {
-  float brightest = 0;
-  for (const Light& l : scene.lights) {
-    for (const Float3& part : {l.position, l.color, l.edge1, l.edge2})
-      lights.insert(lights.end(), {part.x, part.y, part.z});
-    shading.area |= l.is_area();
-    brightest += largest_channel(l.color);
-  }
-  write_color(scene.background, shading.background);
-  shading.brightest =
-      std::max(largest_channel(scene.background), materials.emitted + materials.lit * brightest);
-  shading.lights = lights.data();
-  shading.light_count = static_cast<int>(scene.lights.size());
 }
 
 void World::Impl::set_materials() {

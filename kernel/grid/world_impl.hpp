@@ -10,6 +10,7 @@
 #include "kernel/base/lazy.hpp"
 #include "kernel/grid/grid.hpp"
 #include "kernel/grid/winding_tree.hpp"
+#include "kernel/scene/lights.hpp"
 #include "kernel/scene/materials.hpp"
 #include "kernel/scene/shading_view.hpp"
 
@@ -33,7 +34,7 @@ struct World::Impl {
   std::vector<Copy> copies;
   std::vector<GridView> grid_views;
   MaterialTable materials;
-  std::vector<float> lights;  ///< [kLightFloats * count], see ShadingView
+  LightTable lights;
   SceneView view;
   ShadingView shading;
   Lazy<MeshCheck> mesh_check;
@@ -58,7 +59,6 @@ struct World::Impl {
   void view_primitives();
   void view_copies();
   void view_grids(const Box& all);
-  void set_lights();
   void set_materials();
 };
 

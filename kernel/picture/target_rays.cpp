@@ -82,8 +82,9 @@ class Targeting {
       look_into(mirror);
     // blurred shadows are hit by samples; many lights leave little of each shadow to see
     std::size_t left = r_.box.size();
-    for (int l = 0; !world_.shading.area && l < world_.shading.light_count; ++l) {
-      const float* const at = world_.shading.lights + kLightFloats * l;
+    const ShadingView& shading = setup_.shading;
+    for (int l = 0; !shading.area && l < shading.light_count; ++l) {
+      const float* const at = shading.lights + kLightFloats * l;
       if (left < rods_.size())
         break;
       left -= rods_.size();
@@ -115,7 +116,8 @@ class Targeting {
       return 0;
     const Point3 right{{f.lens_right[0], f.lens_right[1], f.lens_right[2]}};
     const double focus = static_cast<double>(f.focus);
-    return std::abs(focus / depth - 1) * std::sqrt(dot(right, right)) / to_.pixel(focus);
+    const double ratio = f.parallel ? depth / focus : focus / depth;
+    return std::abs(ratio - 1) * std::sqrt(dot(right, right)) / to_.pixel(focus);
   }
 
   static double parts_of(const Rod& rod, double step) {
@@ -198,11 +200,11 @@ class Targeting {
   /// Which of the targets a ray from the eye hits.
   void look(TargetRays& rays, Target* targets, std::size_t count, TraceCounts& n) const {
     for (std::size_t i = 0; i < count; ++i)
-      rays.set(i, to_.eye, targets[i].middle(), 0);
+      rays.set(i, to_.eye(targets[i].middle()), targets[i].middle(), 0);
     closest(rays, rays, count, n);
     const auto before = [&](std::size_t i) {
       return rays.id[i] != kNoPrimitive &&
-             static_cast<double>(rays.t[i]) < near(targets[i], to_.eye);
+             static_cast<double>(rays.t[i]) < near(targets[i], to_.eye(targets[i].middle()));
     };
     for (int k = 0; k < kMostClear; ++k) {
       bool any = false;
@@ -241,18 +243,18 @@ class Targeting {
                       std::size_t count,
                       TraceCounts& n) const {
     for (std::size_t i = 0; i < count; ++i)
-      rays.set(i, to_.eye, targets[i].middle(), 0);
+      rays.set(i, to_.eye(targets[i].middle()), targets[i].middle(), 0);
     closest(rays, rays, count, n);
     for (std::size_t i = 0; i < count; ++i) {
-      const Point3 image = targets[i].middle();
-      const double eye_above = mirror.above(to_.eye), all = eye_above - mirror.above(image);
+      const Point3 image = targets[i].middle(), eye = to_.eye(image);
+      const double eye_above = mirror.above(eye), all = eye_above - mirror.above(image);
       const double t = eye_above / all;  // where the way to the image crosses the mirror
       targets[i].hits_target = rays.id[i] != kNoPrimitive && t > 0 && t < 1 &&
                                std::abs(static_cast<double>(rays.t[i]) - t) <= 1e-3 * t &&
                                is_smooth_mirror(world_.shading.materials, material_of(rays.id[i]));
-      Point3 at = to_.eye;
+      Point3 at = eye;
       for (std::size_t a = 0; a < 3 && targets[i].hits_target; ++a)
-        at[a] += t * (image[a] - to_.eye[a]);
+        at[a] += t * (image[a] - eye[a]);
       rays.set(i, at, mirror.image(image), 1e-4);
     }
     closest(rays, rays, count, n);
@@ -302,7 +304,7 @@ class Targeting {
       targets[i].radius *= t;
     }
     for (std::size_t i = 0; i < count; ++i)
-      rays.set(i, to_.eye, targets[i].middle(), 0);
+      rays.set(i, to_.eye(targets[i].middle()), targets[i].middle(), 0);
     closest(rays, rays, count, n);
     for (std::size_t i = 0; i < count; ++i)
       targets[i].hits_target =
@@ -311,12 +313,9 @@ class Targeting {
 
   /// The brightest that a thing may look, over white.
   float brightness(std::uint32_t material) const {
-    const auto of = [&](int field, std::size_t c) {
-      return world_.shading.materials.field[static_cast<std::size_t>(field) + c][material];
-    };
     float most = 1;
-    for (std::size_t c = 0; c < 3; ++c)
-      most = std::max(most, of(kEmissionR, c));
+    for (const MaterialField c : {kEmissionR, kEmissionG, kEmissionB})
+      most = std::max(most, world_.shading.materials.field[c][material]);
     return most;
   }
 

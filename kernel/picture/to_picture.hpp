@@ -11,7 +11,7 @@ class ToPicture {
  public:
   explicit ToPicture(const FrameView& f) : f_(f) {
     for (std::size_t a = 0; a < 3; ++a) {
-      eye[a] = f.eye[a];
+      eye_[a] = f.eye[a];
       ff_ += square(f.forward[a]);
       rr_ += square(f.right[a]);
       uu_ += square(f.up[a]);
@@ -26,28 +26,39 @@ class ToPicture {
     double x = 0;
     double y = 0;
     for (std::size_t a = 0; a < 3; ++a) {
-      const double d = p[a] - eye[a];
+      const double d = p[a] - eye_[a];
       z += d * f_.forward[a];
       x += d * f_.right[a];
       y += d * f_.up[a];
     }
     z /= ff_;
-    return {.5 * f_.width + x / (rr_ * z), .5 * f_.height - y / (uu_ * z), z};
+    const double shrink = f_.parallel ? 1 : z;
+    return {.5 * f_.width + x / (rr_ * shrink), .5 * f_.height - y / (uu_ * shrink), z};
+  }
+  /// Where a ray that sees a point starts.
+  Point3 eye(const Point3& p) const {
+    if (!f_.parallel)
+      return eye_;
+    const double depth = (*this)(p).depth;
+    Point3 at = p;
+    for (std::size_t a = 0; a < 3; ++a)
+      at[a] -= depth * f_.forward[a];
+    return at;
   }
   /// How wide a pixel is.
-  double pixel(double depth) const { return depth * std::sqrt(rr_); }
+  double pixel(double depth) const { return (f_.parallel ? 1 : depth) * std::sqrt(rr_); }
   /// Pixels that a ball of a radius reaches from its middle at most, anywhere in the picture: balls
   /// look longer in its corners.
   double half_width(double radius, double depth) const {
-    const double corner = square(.5 * f_.width) * rr_ + square(.5 * f_.height) * uu_;
+    const double corner =
+        f_.parallel ? 0 : square(.5 * f_.width) * rr_ + square(.5 * f_.height) * uu_;
     return radius / pixel(depth) * std::sqrt(1 + corner / ff_);
   }
-
-  Point3 eye;
 
  private:
   static double square(double x) { return x * x; }
   const FrameView& f_;
+  Point3 eye_;
   double ff_ = 0;
   double rr_ = 0;
   double uu_ = 0;

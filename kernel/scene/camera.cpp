@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernel/base/sine.hpp"
 #include "kernel/scene/frame.hpp"
 
 namespace grelha {
@@ -48,6 +49,11 @@ bool lens_is_valid(const Camera& c) {
   return c.aperture >= 0 && std::isfinite(c.aperture) && c.focus > 0 && std::isfinite(c.focus);
 }
 
+bool height_is_valid(const Camera& c) {
+  constexpr double kMostHeight = 1e18;  // of what floats square
+  return c.orthographic_height > 0 && c.orthographic_height <= kMostHeight;
+}
+
 /// Squared sine of the least angle between view and up: below it rounding decides where right is.
 constexpr double kLeastSineSquared = 1e-18;
 
@@ -63,18 +69,6 @@ bool directions_valid(const Camera& c) {
   return dot(side, side) > kLeastSineSquared;
 }
 
-/// Tangent of x in (0, pi/2) from the series of sine and cosine, summed from the smallest term.
-double tangent(double x) {
-  const double xx = x * x;
-  double s = 1;
-  double c = 1;
-  for (int k = 12; k >= 1; --k) {
-    s = 1 - s * xx / ((2 * k) * (2 * k + 1));
-    c = 1 - c * xx / ((2 * k) * (2 * k - 1));
-  }
-  return s * x / c;
-}
-
 void put(float (&to)[3], const Double3& v) {
   to[0] = static_cast<float>(v.x);
   to[1] = static_cast<float>(v.y);
@@ -85,12 +79,32 @@ void put(float (&to)[3], const Double3& v) {
 
 bool camera_is_valid(const Camera& c) {
   const bool has_angle = c.angle_deg > 0 && c.angle_deg < 180;
+  const bool has_field = c.orthographic_height == 0 ? has_angle : height_is_valid(c);
   return finite(c.eye) && finite(c.at) && finite(c.up) && is_picture_side(c.width) &&
-         is_picture_side(c.height) && has_angle && lens_is_valid(c) && directions_valid(c);
+         is_picture_side(c.height) && has_field && lens_is_valid(c) && directions_valid(c);
 }
 
 double pixel_size(const Camera& c) {
-  return 2 * tangent(c.angle_deg * 3.14159265358979323846 / 360) / c.height;
+  if (c.orthographic_height > 0)
+    return c.orthographic_height / c.height;
+  const auto [sine, cosine] = sine_cosine(c.angle_deg * 3.14159265358979323846 / 360);
+  return 2 * (sine / cosine) / c.height;
+}
+
+void camera_rays(const Camera& camera, int row, std::span<Ray> rays) {
+  const FrameView f = make_frame(camera);
+  const float sy = .5f * static_cast<float>(f.height) - (static_cast<float>(row) + .5f);
+  for (std::size_t x = 0; x < rays.size(); ++x) {
+    const float sx = (static_cast<float>(x) + .5f) - .5f * static_cast<float>(f.width);
+    float org[3], d[3];
+    for (int k = 0; k < 3; ++k) {
+      const auto moved = [&](float from) { return (from + sx * f.right[k]) + sy * f.up[k]; };
+      org[k] = f.parallel ? moved(f.eye[k]) : f.eye[k];
+      d[k] = f.parallel ? f.forward[k] : moved(f.forward[k]);
+    }
+    rays[x].org = {org[0], org[1], org[2]};
+    rays[x].dir = normalized({d[0], d[1], d[2]});
+  }
 }
 
 FrameView make_frame(const Camera& c) {
@@ -106,6 +120,7 @@ FrameView make_frame(const Camera& c) {
   f.width = c.width;
   f.height = c.height;
   f.lens = c.aperture > 0;
+  f.parallel = c.orthographic_height > 0;
   // Directions are as long as the focus is far, and rays take lengths whose squares are floats. If
   // a lens is focused that far away, rounding bends no ray against the others.
   f.focus = static_cast<float>(std::clamp(c.focus, 1e-15, 1e15));

@@ -133,12 +133,18 @@ void check_options(const Camera& camera, const RenderOptions& options) {
 Setup set_up(const World& world, const Camera& camera, const RenderOptions& options) {
   check_options(camera, options);
   const World::Impl& w = world.impl();
-  const SampleOptions sampling = needed_samples(w.shading, camera, options);
   Setup setup{.variant = choose_variant(options.isa),
               .frame = make_frame(camera),
-              .plan = plan_samples(sampling, camera, w.shading),
+              .plan = {},
               .shading = w.shading,
-              .places = {}};
+              .places = {},
+              .lights = {}};
+  if (options.lighting) {
+    setup.lights.emplace(options.lighting->lights, options.lighting->background);
+    setup.lights->show(w.materials, setup.shading);
+  }
+  const SampleOptions sampling = needed_samples(setup.shading, camera, options);
+  setup.plan = plan_samples(sampling, camera, setup.shading);
   if (setup.plan.on && setup.plan.kind == SamplePlan::kBlue) {
     setup.places = drawing_places(camera.width, camera.height, sampling.seed);
     setup.plan.places = setup.places.data();

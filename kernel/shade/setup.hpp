@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "kernel/scene/frame.hpp"
+#include "kernel/scene/lights.hpp"
 #include "grelha/render_options.hpp"
 #include "grelha/world.hpp"
 #include "kernel/query/variants.hpp"
@@ -16,6 +18,7 @@ struct Setup {
   SamplePlan plan;
   ShadingView shading;
   std::vector<std::uint32_t> places;  ///< the plan points to these
+  std::optional<LightTable> lights;   ///< `shading` points to these; absent: to the World's
 };
 
 /// Throws std::invalid_argument for a bad camera or option.

@@ -15,6 +15,11 @@ namespace grelha::GRELHA_ISA {
 /// (docs/performance.md).
 inline constexpr int kClasses = 2;
 
+/// Origins and directions of rays.
+struct CameraRays {
+  VFloat3 org, dir;
+};
+
 /// A camera, the same in each lane.
 struct LaneCamera {
   explicit LaneCamera(const FrameView& f)
@@ -23,22 +28,21 @@ struct LaneCamera {
         right(splat(f.right)),
         up(splat(f.up)),
         half_width(.5f * static_cast<float>(f.width)),
-        half_height(.5f * static_cast<float>(f.height)) {}
+        half_height(.5f * static_cast<float>(f.height)),
+        parallel(f.parallel) {}
 
-  /// From the eye to positions in the picture, in pixels from its upper left corner.
-  VFloat3 toward(const VFloat& x, const VFloat& y) const {
+  /// Through positions in the picture, in pixels from its upper left corner.
+  CameraRays rays(const VFloat& x, const VFloat& y) const {
     const VFloat sx = x - half_width;
     const VFloat sy = half_height - y;
-    return (forward + sx * right) + sy * up;
+    if (parallel)
+      return {(eye + sx * right) + sy * up, forward};
+    return {eye, (forward + sx * right) + sy * up};
   }
 
   VFloat3 eye, forward, right, up;
   VFloat half_width, half_height;
-};
-
-/// Origins and directions of rays.
-struct CameraRays {
-  VFloat3 org, dir;
+  bool parallel;
 };
 
 /// Rays that start from points of the lens and cross the given ones in focus.
@@ -115,7 +119,7 @@ struct CameraRays {
       weight = move_into_boxes(words_at(work.boxes, load_words<VFloat>(b.pixel + i)), in);
     const VFloat x = load<VFloat>(b.org.x + i) + in.u;
     const VFloat y = load<VFloat>(b.org.y + i) + in.v;
-    CameraRays rays{camera.eye, camera.toward(x, y)};
+    CameraRays rays = camera.rays(x, y);
     if (f.lens)
       rays = through_lens(f, rays, sample(plan.lens));
     store_camera_rays(b, i, rays, weight);

@@ -60,8 +60,14 @@ class Scene:
         """A dict of eye, at, up (tuples), angle (degrees), width and height (pixels)."""
         return self._core.camera()
 
+    @property
+    def lights(self):
+        """Positions and colours, float64 (n, 2, 3). Area lights are at their centres."""
+        return self._core.lights()
+
     def render(self, width=None, height=None, *, samples=None, error=None, seed=0, depth=5,
-               eye=None, at=None, up=None, angle=None, threads=0):
+               eye=None, at=None, up=None, angle=None, orbit=None, orthographic=None, lights=None,
+               background=None, threads=0):
         """A picture, linear RGB, row 0 on top: float32 (height, width, 3).
 
         width, height   pixels; None: as the scene says
@@ -71,14 +77,21 @@ class Scene:
         seed            of the samples
         depth           longest path, in rays
         eye, at, up     (3,) where the camera is, what it looks at, what is up; None: as the scene
-                        says. The lights stay where they are.
+                        says
         angle           vertical field of view, degrees
+        orbit           (azimuth, elevation) or (azimuth, elevation, zoom): from there so many
+                        degrees to the right and up around what the view shows; zoom divides the
+                        angle
+        orthographic    parallel rays: the height that the picture shows, scene units
+        lights          (n, 2, 3), a position and a colour each; None: the scene's. Those of a bare
+                        mesh move with the camera, unless lights=scene.lights holds them.
+        background      (3,) light of rays that hit nothing
         threads         0: one for each processor. The number changes no bit of the picture.
 
         Raises TypeError or ValueError that names the argument, and KeyboardInterrupt.
         """
-        return self._core.render(width, height, samples, error, seed, depth, eye, at, up, angle,
-                                 threads)
+        view = (width, height, eye, at, up, angle, orbit, orthographic, lights, background)
+        return self._core.render(view, samples, error, seed, depth, threads)
 
 
 def read(path, *, threads=0):

@@ -12,6 +12,7 @@
 #include "frontend/input/default_view.hpp"
 #include "frontend/input/effects.hpp"
 #include "frontend/input/read_scene.hpp"
+#include "frontend/scene/scene_builder.hpp"
 #include "grelha/render.hpp"
 #include "src/hear.hpp"
 
@@ -33,11 +34,59 @@ py::tuple tuple_of(const std::array<double, 3>& v) {
   return py::make_tuple(v[0], v[1], v[2]);
 }
 
-Float3 point_in(py::handle given, const char* name, const Frame& frame) {
+using Point = std::array<double, 3>;
+
+/// None is absent.
+ViewOptions::Point point_in(py::handle given, const char* name) {
+  if (given.is_none())
+    return {};
   const Triples v(given, name);
   if (!v.shape().empty())
     wrong_value(name, "shape (3,)", text_of(v.full_shape()));
-  return v.in_frame(frame)[0];
+  const PointArray& p = v.points();
+  return Point{p.at(0, 0), p.at(0, 1), p.at(0, 2)};
+}
+
+std::optional<double> optional_number(py::handle given, const char* name) {
+  return given.is_none() ? std::nullopt : std::optional(number_in(given, name));
+}
+
+Float3 color_of(const Point& p, const char* name) {
+  for (const double channel : p)
+    if (!(channel >= 0 && channel <= kLargest))
+      wrong_value(name, "light from 0 to 1e18", std::to_string(channel));
+  return {float(p[0]), float(p[1]), float(p[2])};
+}
+
+Orbit orbit_in(py::handle given) {
+  const Doubles numbers(given, "orbit");
+  if (numbers.shape() != Shape{2} && numbers.shape() != Shape{3})
+    wrong_value("orbit", "azimuth, elevation and perhaps zoom", text_of(numbers.shape()));
+  const py::array_t<double> v(given.cast<py::object>());
+  const Orbit orbit{v.at(0), v.at(1), v.size() == 3 ? v.at(2) : 1};
+  if (!(std::abs(orbit.azimuth_deg) <= kMostTurn && std::abs(orbit.elevation_deg) <= kMostTurn))
+    wrong_value("orbit", "degrees, at most 100 turns", py::str(given));
+  if (!(orbit.zoom >= kLeastZoom && orbit.zoom <= kMostZoom))
+    wrong_value("orbit", "a zoom of .001 to 1000", std::to_string(orbit.zoom));
+  return orbit;
+}
+
+std::vector<Light> lights_in(py::handle given, const Frame& frame) {
+  const Triples v(given, "lights");
+  if (v.shape().size() != 2 || v.shape()[1] != 2)
+    wrong_value("lights", "shape (n, 2, 3), of positions and colours", text_of(v.full_shape()));
+  const auto at = [&](std::size_t i) {
+    return Point{v.points().at(i, 0), v.points().at(i, 1), v.points().at(i, 2)};
+  };
+  std::vector<Light> lights;
+  for (std::size_t i = 0; i < v.count(); i += 2) {
+    const Float3 position = frame.inside(at(i));
+    if (!std::isfinite(position.x) || !std::isfinite(position.y) || !std::isfinite(position.z))
+      wrong_value(
+          "lights", "finite positions", "one that is not, in light " + std::to_string(i / 2));
+    lights.push_back({position, color_of(at(i + 1), "lights"), {}, {}});
+  }
+  return lights;
 }
 
 }  // namespace
@@ -47,7 +96,7 @@ FileScene FileScene::of(SceneFile file, bool in_double, int threads) {
   RenderOptions options;
   apply_effects({}, file, options);
   scene.samples_ = options.sampling.samples;
-  scene.camera_ = file.camera;
+  scene.view_ = view_of(file);
   scene.model_ =
       built({{std::move(file.scene), file.frame.offset}, file.frame.scale, in_double}, threads);
   return scene;
@@ -80,36 +129,51 @@ FileScene FileScene::of_mesh(py::handle vertices, py::handle faces, int threads)
 }
 
 py::dict FileScene::camera() const {
+  const Camera& from = view_.camera;
   py::dict camera;
-  camera["eye"] = tuple_of(model_->frame.outside(camera_.eye));
-  camera["at"] = tuple_of(model_->frame.outside(camera_.at));
-  camera["up"] = tuple_of({camera_.up.x, camera_.up.y, camera_.up.z});
-  camera["angle"] = camera_.angle_deg;
-  camera["width"] = camera_.width;
-  camera["height"] = camera_.height;
+  camera["eye"] = tuple_of(model_->frame.outside(from.eye));
+  camera["at"] = tuple_of(model_->frame.outside(from.at));
+  camera["up"] = tuple_of({from.up.x, from.up.y, from.up.z});
+  camera["angle"] = from.angle_deg;
+  camera["width"] = from.width;
+  camera["height"] = from.height;
   return camera;
 }
 
-Camera FileScene::camera_for(const RenderArguments& given) const {
-  Camera camera = camera_;
-  const Frame& frame = model_->frame;
+py::array_t<double> FileScene::lights() const {
+  py::array_t<double> all(Shape{py::ssize_t(view_.lighting.lights.size()), 2, 3});
+  double* to = all.mutable_data();
+  for (const Light& light : view_.lighting.lights) {
+    to = std::ranges::copy(model_->frame.outside(light.position), to).out;
+    to = std::ranges::copy(Point{light.color.x, light.color.y, light.color.z}, to).out;
+  }
+  return all;
+}
+
+View FileScene::view_for(const ViewArguments& given) const {
+  ViewOptions options;
+  options.eye = point_in(given.eye, "eye");
+  options.at = point_in(given.at, "at");
+  options.up = point_in(given.up, "up");
+  options.angle_deg = optional_number(given.angle, "angle");
+  options.orthographic_height = optional_number(given.orthographic, "orthographic");
+  if (const auto& height = options.orthographic_height;
+      height && !(*height > 0 && *height <= kLargest))
+    wrong_value("orthographic", "a height above 0, at most 1e18", std::to_string(*height));
+  if (!given.orbit.is_none())
+    options.orbit = orbit_in(given.orbit);
+  if (const auto color = point_in(given.background, "background"))
+    options.background = color_of(*color, "background");
+  View view = view_;
+  if (!given.lights.is_none()) {
+    view.lighting.lights = lights_in(given.lights, model_->frame);
+    view.made_up_lights = false;
+  }
   if (!given.width.is_none())
-    camera.width = whole_number_in(given.width, "width", 1, kMostSide);
+    view.camera.width = whole_number_in(given.width, "width", 1, kMostSide);
   if (!given.height.is_none())
-    camera.height = whole_number_in(given.height, "height", 1, kMostSide);
-  if (!given.eye.is_none())
-    camera.eye = point_in(given.eye, "eye", frame);
-  if (!given.at.is_none())
-    camera.at = point_in(given.at, "at", frame);
-  if (!given.up.is_none())
-    camera.up = point_in(given.up, "up", {});  // a direction
-  if (!given.angle.is_none())
-    camera.angle_deg = number_in(given.angle, "angle");
-  if (!camera_is_valid(camera))
-    throw py::value_error(
-        "eye, at, up, angle: expected finite numbers, eye apart from at, up not along the view, "
-        "and an angle between 0 and 180 degrees");
-  return camera;
+    view.camera.height = whole_number_in(given.height, "height", 1, kMostSide);
+  return changed(std::move(view), options, model_->frame);
 }
 
 RenderOptions FileScene::options_for(const RenderArguments& given) const {
@@ -131,8 +195,10 @@ RenderOptions FileScene::options_for(const RenderArguments& given) const {
 }
 
 py::array_t<float> FileScene::render(const RenderArguments& given) const {
-  const Camera camera = camera_for(given);
+  View view = view_for(given.view);
+  const Camera& camera = view.camera;
   RenderOptions options = options_for(given);
+  options.lighting = std::move(view.lighting);
   py::array_t<float> pixels(Shape{camera.height, camera.width, 3});
   float* const to = pixels.mutable_data();
   const SharedModel model = model_;

@@ -4,16 +4,20 @@
 #include <memory>
 #include <string>
 
-#include "frontend/scene/scene_file.hpp"
-#include "grelha/camera.hpp"
+#include "frontend/input/view.hpp"
 #include "grelha/render_options.hpp"
 #include "src/model.hpp"
 
 namespace grelha::python {
 
-/// What a caller says of a picture; None is as the scene has it.
+/// What a caller says of a view; None is as the scene has it.
+struct ViewArguments {
+  py::handle width, height, eye, at, up, angle, orbit, orthographic, lights, background;
+};
+/// And of a picture.
 struct RenderArguments {
-  py::handle width, height, samples, error, seed, depth, eye, at, up, angle, threads;
+  ViewArguments view;
+  py::handle samples, error, seed, depth, threads;
 };
 
 class FileScene {
@@ -29,15 +33,16 @@ class FileScene {
 
   const SharedModel& model() const { return model_; }
   py::dict camera() const;
+  py::array_t<double> lights() const;
   py::array_t<float> render(const RenderArguments& given) const;
 
  private:
   static FileScene of(SceneFile file, bool in_double, int threads);
-  Camera camera_for(const RenderArguments& given) const;
+  View view_for(const ViewArguments& given) const;
   RenderOptions options_for(const RenderArguments& given) const;
 
   SharedModel model_;
-  Camera camera_;
+  View view_;
   int samples_ = 1;
 };
 

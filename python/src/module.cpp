@@ -20,6 +20,12 @@ void translate(std::exception_ptr thrown) {
   }
 }
 
+/// Names in a tuple that outlives them, in the order of the struct.
+ViewArguments view_in(const py::tuple& v) {
+  const auto at = [&](std::size_t i) { return py::handle(PyTuple_GetItem(v.ptr(), i)); };
+  return {at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7), at(8), at(9)};
+}
+
 void define_scene(py::module_& module) {
   module.def("scene_of_mesh", [](py::handle vertices, py::handle faces, py::handle threads) {
     return FileScene::of_mesh(vertices, faces, threads_in(threads));
@@ -32,21 +38,16 @@ void define_scene(py::module_& module) {
   scene.def("state", &FileScene::state);
   scene.def("core", [](const FileScene& self) { return Core{self.model()}; });
   scene.def("camera", &FileScene::camera);
+  scene.def("lights", &FileScene::lights);
   scene.def("render",
             [](const FileScene& self,
-               py::handle width,
-               py::handle height,
+               const py::tuple& view,
                py::handle samples,
                py::handle error,
                py::handle seed,
                py::handle depth,
-               py::handle eye,
-               py::handle at,
-               py::handle up,
-               py::handle angle,
                py::handle threads) {
-              return self.render(
-                  {width, height, samples, error, seed, depth, eye, at, up, angle, threads});
+              return self.render({view_in(view), samples, error, seed, depth, threads});
             });
 }
 

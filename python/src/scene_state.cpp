@@ -95,10 +95,10 @@ py::tuple FileScene::state() const {
   const Scene& s = model_->scene();
   return py::make_tuple(state_of(*model_),
                         floats_of(s.materials, kMaterialFloats),
-                        floats_of(s.lights, kLightFloats),
-                        floats_of(std::vector<Float3>{s.background}, 3),
-                        tuple_of_camera(camera_),
-                        samples_);
+                        floats_of(view_.lighting.lights, kLightFloats),
+                        floats_of(std::vector<Float3>{view_.lighting.background}, 3),
+                        tuple_of_camera(view_.camera),
+                        py::make_tuple(view_.made_up_lights, view_.reach, samples_));
 }
 
 FileScene FileScene::of_state(const py::tuple& state) {
@@ -106,14 +106,16 @@ FileScene FileScene::of_state(const py::tuple& state) {
     throw py::value_error("state: expected that of a Scene of this version of grelha");
   ModelParts parts = parts_of_state(state[0].cast<py::tuple>());
   parts.scene.materials = things_of<Material>(state[1], kMaterialFloats);
-  parts.scene.lights = things_of<Light>(state[2], kLightFloats);
   const auto background = things_of<Float3>(state[3], 3);
   if (background.size() != 1)
     throw py::value_error("state: expected one background");
-  parts.scene.background = background[0];
   FileScene scene;
-  scene.camera_ = camera_of(state[4].cast<py::tuple>());
-  scene.samples_ = state[5].cast<int>();
+  const auto [made_up, reach, samples] = state[5].cast<std::tuple<bool, double, int>>();
+  scene.view_ = {camera_of(state[4].cast<py::tuple>()),
+                 {things_of<Light>(state[2], kLightFloats), background[0]},
+                 made_up,
+                 reach};
+  scene.samples_ = samples;
   if (scene.samples_ < 1 || scene.samples_ > kMostSamples)
     throw py::value_error("state: expected 1 sample or more");
   scene.model_ = built(std::move(parts), 0);

@@ -113,6 +113,60 @@ class Pictures(unittest.TestCase):
                         .all())
         self.assertLess((picture == back).all(-1).mean(), 0.7)
 
+    def test_lights_of_a_mesh_follow_the_camera(self):
+        scene = grelha.Scene(*ball(16))
+        eye, at = np.array(scene.camera["eye"]), np.array(scene.camera["at"])
+        behind = 2 * at - eye
+        seen = scene.render(64, 64, eye=behind, background=(9, 9, 9))
+        self.assertGreater(seen.min(), 0.12)
+        self.assertGreater(np.median(seen[seen < 9]), 0.4)
+        stay = scene.render(64, 64, eye=behind, background=(9, 9, 9), lights=scene.lights)
+        self.assertLess(np.median(stay[stay < 9]), 0.2)
+        self.assertEqual(scene.lights.shape, (3, 2, 3))
+        dark = scene.render(64, 64, lights=np.empty((0, 2, 3)), background=(0, 0, 0))
+        self.assertLess(dark.max(), 0.2, "the glow of the material")
+        again = __import__("pickle").loads(__import__("pickle").dumps(scene))
+        np.testing.assert_array_equal(again.render(64, 64, eye=behind, background=(9, 9, 9)), seen)
+
+    def test_lights_and_background(self):
+        scene = grelha.read(DATA / "balls.nff")
+        picture = scene.render(40, 40, samples=4)
+        np.testing.assert_array_equal(scene.render(40, 40, samples=4, lights=scene.lights), picture)
+        other = [((1, 2, 3), (0.5, 0, 0))]
+        self.assertGreater(np.abs(scene.render(40, 40, samples=4, lights=other) - picture).max(), 0)
+        for name, value in (("lights", [(1, 2, 3)]), ("lights", [((0, 0, 1), (-1, 0, 0))]),
+                            ("lights", [((np.nan, 0, 1), (1, 0, 0))]), ("background", (-1, 0, 0)),
+                            ("background", 1.0), ("orbit", (1,)), ("orbit", (0, 1, 0)),
+                            ("orbit", (np.nan, 1)), ("orthographic", -1), ("orbit", (0, 1e9))):
+            with self.assertRaisesRegex(ValueError, name):
+                scene.render(8, 8, **{name: value})
+
+    def test_views_are_those_of_the_program(self):
+        program = pathlib.Path(grelha.__file__).parents[2] / "grelha"
+        if not program.exists():
+            self.skipTest(f"there is no {program}")
+        scene = grelha.read(DATA / "torus.ply")
+        views = [({"orbit": (azimuth, elevation)}, ["--orbit", f"{azimuth},{elevation}"])
+                 for azimuth in range(0, 360, 45) for elevation in (-65, -20, 25)]
+        views += [({"orbit": (0, 70)}, ["--orbit", "0,70"]),
+                  ({"orbit": (10, -110, 1.5), "orthographic": 3, "background": (1, 0.5, 0)},
+                   ["--orbit", "10,-110,1.5", "--orthographic", "3", "--background", "1,.5,0"]),
+                  ({"eye": (3, 2, 1), "at": (0, 0.1, 0), "up": (0, 0, 1), "angle": 20.5},
+                   ["--eye", "3,2,1", "--at", "0,.1,0", "--up", "0,0,1", "--angle", "20.5"]),
+                  ({"orbit": (180, 0), "lights": scene.lights},
+                   ["--orbit", "180,0", "--lights", "mesh"])]
+        with tempfile.TemporaryDirectory() as folder:
+            for given, words in views:
+                of_program, of_python = (os.path.join(folder, n) for n in ("a.png", "b.png"))
+                subprocess.run([program, "render", DATA / "torus.ply", "--size", "32x32", "-q",
+                                "-o", of_program, *words], check=True)
+                image = scene.render(32, 32, **given)
+                grelha.write_image(of_python, image)
+                pixels = [pathlib.Path(p).read_bytes().split(b"IDAT", 1)[1]
+                          for p in (of_program, of_python)]
+                self.assertEqual(*pixels, words)
+                self.assertGreater(len(np.unique(image)), 100, words)
+
     def test_files_of_pictures(self):
         image = np.random.default_rng(1).random((5, 7, 3)).astype(np.float32)
         with tempfile.TemporaryDirectory() as folder:

@@ -213,6 +213,7 @@ TEST(Info, JsonSaysWhatTheSceneHolds) {
                                    "grids",
                                    "mesh",
                                    "needs",
+                                   "view",
                                    "made_up"}));
   EXPECT_EQ(json["scene"]["s"], 1);
   EXPECT_EQ(json["kernel"]["spheres"], 1);
@@ -293,6 +294,8 @@ TEST(Info, TextListsTheSame) {
             "in the file   1 s\n"
             "primitives    1 sphere\n"
             "lights        2\n"
+            "view          --eye 0,0,1 --at 0,0,0 --up 0,1,0 --angle 45\n"
+            "              v from 0 0 1 at 0 0 0 up 0 1 0 angle 45 resolution 512 512\n"
             "materials     1\n"
             "bounds        (0.5, 1.5, 2.5) to (1.5, 2.5, 3.5)\n"
             "memory        about 1.2 MB to render: scene 0.1, grids 0.2, the rest to read, build "

@@ -40,6 +40,7 @@ TEST(Identity, KnowsAnotherScene) {
   EXPECT_TRUE(changed([](SceneFile& f) { f.scene.background.y += .1f; }));
   EXPECT_TRUE(changed([](SceneFile& f) { f.camera.eye.z += .1f; }));
   EXPECT_TRUE(changed([](SceneFile& f) { f.camera.angle_deg += .1; }));
+  EXPECT_TRUE(changed([](SceneFile& f) { f.camera.orthographic_height = 1; }));
   EXPECT_TRUE(changed([](SceneFile& f) {
     auto& s = f.scene.geometry.spheres;  // a number that ends one array begins the next
     s.y.insert(s.y.begin(), s.x.back());

@@ -70,11 +70,11 @@ class Determinism : public testing::TestWithParam<const char*> {
  protected:
   static Picture make() {
     const std::string name = GetParam();
-    Picture p = name == "mixture" ? mixture()
-                                  : generated(GetParam(),
-                                              name == "balls"   ? 2
-                                              : name == "mount" ? 4
-                                                                : 2);
+    Picture p = name == "mixture" || name == "parallel" ? mixture()
+                : name == "mount"                       ? generated("mount", 4)
+                                                        : generated(GetParam(), 2);
+    if (name == "parallel")
+      p.camera.orthographic_height = 4;
     p.camera.width = 67;
     p.camera.height = 43;  // no multiple of tile, strip, packet or register
     return p;
@@ -160,6 +160,7 @@ Picture scaled_by(const Picture& picture, double scale) {
   p.camera.eye = scaled(p.camera.eye, scale);
   p.camera.at = scaled(p.camera.at, scale);
   p.camera.aperture *= scale;
+  p.camera.orthographic_height *= scale;
   p.camera.focus *= scale;
   return p;
 }
@@ -175,6 +176,30 @@ TEST_P(Determinism, AtEverySize) {
     const Picture q = scaled_by(p, std::ldexp(1., power));
     EXPECT_EQ(differing(render(World(q.scene, {}), q.camera, {}, stats), wanted), 0u)
         << "times 2^" << power;
+  }
+}
+
+/// Lights of a picture in place of the scene's make the picture of a World that has them.
+TEST_P(Determinism, InOtherLights) {
+  Picture p = make();
+  const World world(p.scene, {});
+  RenderOptions options;
+  options.lighting = Lighting{
+      {{{1, 5, 2}, {.7f, .8f, .9f}, {1, 0, 0}, {0, 0, 1}}, {{-3, 2, 4}, {.2f, 0, .1f}, {}, {}}},
+      {.4f, .3f, .2f}};
+  p.scene.lights = options.lighting->lights;
+  p.scene.background = options.lighting->background;
+  for (const bool by_error : {false, true}) {
+    options.sampling.samples = 4;
+    options.refine.samples = by_error ? 40'000 : 0;
+    RenderOptions plain = options;
+    plain.lighting.reset();
+    RenderStats stats;
+    EXPECT_EQ(differing(render(world, p.camera, options, stats),
+                        render(World(p.scene, {}), p.camera, plain, stats)),
+              0u);
+    options.lighting->lights.erase(options.lighting->lights.begin());  // an area light
+    p.scene.lights = options.lighting->lights;
   }
 }
 
@@ -244,7 +269,7 @@ TEST_P(Determinism, ShowsSomething) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes,
                          Determinism,
-                         testing::Values("balls", "mount", "mixture"),
+                         testing::Values("balls", "mount", "mixture", "parallel"),
                          [](const auto& p) { return std::string(p.param); });
 
 }  // namespace

@@ -60,11 +60,16 @@ TEST(AimedRays, FindSpecks) {
     const double x = std::floor(random.in(-8, 8)) + random.in(.2, .8);
     const double y = std::floor(random.in(-8, 8)) + random.in(.2, .8);
     const Scene s = one_sphere({float(x), float(y), 0}, .1f);
-    const Refinement r = searched(s);
-    EXPECT_EQ(boxes(r), 1u);
-    expect_box(r, x, y, .1);
-    const std::size_t b = r.blocks().of_pixel(pixel_of(x, y));
-    EXPECT_GT(r.missed[b], 1e-5f);
+    Camera parallel = of_unit_pixels();
+    parallel.eye.z = 1;  // where a picture from a point would show other things
+    parallel.orthographic_height = kSide;
+    for (const Camera& camera : {of_unit_pixels(), parallel}) {
+      const Refinement r = searched(s, camera);
+      EXPECT_EQ(boxes(r), 1u);
+      expect_box(r, x, y, .1);
+      const std::size_t b = r.blocks().of_pixel(pixel_of(x, y));
+      EXPECT_GT(r.missed[b], 1e-5f);
+    }
   }
 }
 

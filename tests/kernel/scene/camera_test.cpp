@@ -96,6 +96,60 @@ TEST(Camera, RaysGoThroughPixelCentres) {
   }
 }
 
+/// Rays of an orthographic camera have its direction and start on the plane across it at the eye:
+/// each component takes 2 roundings of its terms and 2 of the sums, of lengths up to the eye's and
+/// the picture's.
+TEST(Camera, ParallelRaysStartOnThePlaneOfTheEye) {
+  const auto batch = std::make_unique<Batch>();
+  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+    Random random(seed);
+    Camera c = random_camera(random);
+    c.orthographic_height = random.log_in(1e-3, 1e3);
+    if (!camera_is_valid(c))
+      continue;
+    const V forward = oracle::unit(V(c.at) - V(c.eye));
+    const V right = oracle::unit(cross(forward, V(c.up))), up = cross(right, forward);
+    const oracle::Real pixel = oracle::Real(c.orthographic_height) / c.height;
+    const int x = static_cast<int>(random.below(static_cast<std::uint32_t>(c.width))),
+              y = static_cast<int>(random.below(static_cast<std::uint32_t>(c.height)));
+    batch->rays.org.x[0] = static_cast<float>(x);
+    batch->rays.org.y[0] = static_cast<float>(y);
+    scalar::camera_rays(make_frame(c), {.batch = batch.get()}, 1, true);
+    const Rows3 &org = batch->rays.org, &dir = batch->rays.dir;
+    const V across = pixel * (x + .5L - .5L * c.width) * right,
+            upward = pixel * (.5L * c.height - (y + .5L)) * up;
+    ASSERT_LE(length(V{dir.x[0], dir.y[0], dir.z[0]} - forward), 12 * oracle::kEps) << seed;
+    ASSERT_LE(length(V{org.x[0], org.y[0], org.z[0]} - (V(c.eye) + across + upward)),
+              6 * oracle::kEps * (length(V(c.eye)) + length(across) + length(upward)))
+        << "seed " << seed;
+  }
+}
+
+/// What callers get is what pictures are made of.
+TEST(Camera, RaysForCallersAreThoseOfPictures) {
+  const auto batch = std::make_unique<Batch>();
+  for (std::uint64_t seed = 0; seed < 500; ++seed) {
+    Random random(seed);
+    Camera c = random_camera(random);
+    c.orthographic_height = seed % 2 == 0 ? 0 : random.log_in(1e-3, 1e3);
+    if (!camera_is_valid(c))
+      continue;
+    std::vector<Ray> row(static_cast<std::size_t>(c.width));
+    const int y = static_cast<int>(random.below(static_cast<std::uint32_t>(c.height)));
+    camera_rays(c, y, row);
+    for (std::size_t x = 0; x < row.size(); ++x) {
+      batch->rays.org.x[x] = static_cast<float>(x);
+      batch->rays.org.y[x] = static_cast<float>(y);
+    }
+    scalar::camera_rays(make_frame(c), {.batch = batch.get()}, c.width, true);
+    const Rows3 &org = batch->rays.org, &dir = batch->rays.dir;
+    for (std::size_t x = 0; x < row.size(); ++x) {
+      ASSERT_EQ(row[x].org, (Float3{org.x[x], org.y[x], org.z[x]})) << "seed " << seed;
+      ASSERT_EQ(row[x].dir, (Float3{dir.x[x], dir.y[x], dir.z[x]})) << "seed " << seed;
+    }
+  }
+}
+
 /// A white square seen head on: pixels whose centres lie on it are white, all others black; also
 /// off the square format.
 TEST(Camera, PictureStandsUpright) {

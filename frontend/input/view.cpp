@@ -1,0 +1,178 @@
+#include "frontend/input/view.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+
+#include "frontend/scene/double3.hpp"
+#include "kernel/base/sine.hpp"
+
+namespace grelha {
+namespace {
+
+Double3 sum(double s, const Double3& a, double t, const Double3& b) {
+  return {s * a[0] + t * b[0], s * a[1] + t * b[1], s * a[2] + t * b[2]};
+}
+Double3 unit_vector(const Double3& a) {
+  return sum(1 / length(a), a, 0, a);
+}
+
+/// Of any angle; of whole quarter turns exactly.
+SineCosine of_degrees(double degrees) {
+  const auto [s, c] = sine_cosine(std::remainder(degrees, 90) * 3.14159265358979323846 / 180);
+  switch (std::lround((degrees - std::remainder(degrees, 90)) / 90) & 3) {
+    case 0:
+      return {s, c};
+    case 1:
+      return {c, -s};
+    case 2:
+      return {-s, -c};
+    default:
+      return {-c, s};
+  }
+}
+
+/// The axes of a valid camera: from `at` to the eye, to its right and up.
+struct CameraAxes {
+  explicit CameraAxes(const Camera& c)
+      : back(difference(c.eye, c.at)),
+        distance(length(back)),
+        right(unit_vector(cross(in_double(c.up), back))),
+        up(unit_vector(cross(back, right))) {
+    back = unit_vector(back);
+  }
+  Double3 back;
+  double distance;
+  Double3 right, up;
+};
+
+/// The distance at which a ball fills the picture as a bare mesh does.
+double distance_of(double radius, const Camera& camera) {
+  const double tangent = kFilledByMesh * pixel_size(camera) * camera.height / 2;
+  return radius * std::sqrt(1 + tangent * tangent) / tangent;
+}
+
+void go_around(const Orbit& by, double distance, Camera& camera) {
+  CameraAxes axes(camera);
+  const Double3 pole = unit_vector(in_double(camera.up));
+  const SineCosine azimuth = of_degrees(by.azimuth_deg);
+  const SineCosine elevation = of_degrees(by.elevation_deg);
+  const auto turned = [&](const Double3& v) {  // Rodrigues' formula
+    return sum(1,
+               sum(azimuth.cosine, v, azimuth.sine, cross(pole, v)),
+               (1 - azimuth.cosine) * dot(pole, v),
+               pole);
+  };
+  const Double3 back = turned(axes.back), up = turned(axes.up);
+  const Double3 to_eye = sum(elevation.cosine, back, elevation.sine, up);
+  camera.eye = in_floats(sum(1, in_double(camera.at), distance, to_eye));
+  if (by.elevation_deg != 0)  // `up` may be along the view
+    camera.up = in_floats(sum(elevation.cosine, up, -elevation.sine, back));
+  camera.angle_deg /= by.zoom;
+  camera.orthographic_height /= by.zoom;
+}
+
+void expect_valid(const Camera& camera) {
+  if (!camera_is_valid(camera))
+    throw std::invalid_argument(
+        "eye, at, up, angle: expected finite numbers, eye apart from at, up not along the view, "
+        "and an angle between 0 and 180 degrees");
+}
+
+/// The shortest decimals that read back as the same.
+template <class Number>
+std::string shortest(Number value) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+
+std::string joined(const std::array<std::string, 3>& words, const std::string& between) {
+  return words[0] + between + words[1] + between + words[2];
+}
+
+std::array<std::string, 3> words_of(const Float3& v) {
+  return {shortest(v.x), shortest(v.y), shortest(v.z)};
+}
+
+/// Of a point in the file's coordinates.
+std::array<std::string, 3> words_of(const Float3& v, const Frame& frame) {
+  const auto [x, y, z] = frame.outside(v);
+  return frame == Frame{} ? words_of(v) : std::array{shortest(x), shortest(y), shortest(z)};
+}
+
+}  // namespace
+
+std::vector<std::string> lines_of(const View& view, const Frame& frame) {
+  const Camera& c = view.camera;
+  const auto eye = words_of(c.eye, frame), at = words_of(c.at, frame), up = words_of(c.up);
+  const std::string angle = shortest(c.angle_deg);
+  std::vector<std::string> lines{"--eye " + joined(eye, ",") + " --at " + joined(at, ",") +
+                                 " --up " + joined(up, ",") + " --angle " + angle};
+  if (c.orthographic_height > 0)
+    lines[0] += " --orthographic " + shortest(c.orthographic_height / frame.scale);
+  else
+    lines.push_back("v from " + joined(eye, " ") + " at " + joined(at, " ") + " up " +
+                    joined(up, " ") + " angle " + angle + " resolution " + std::to_string(c.width) +
+                    ' ' + std::to_string(c.height));
+  if (!view.made_up_lights)
+    return lines;
+  for (const Light& light : view.lighting.lights)
+    lines.push_back("l " + joined(words_of(light.position, frame), " ") + ' ' +
+                    joined(words_of(light.color), " "));
+  lines.push_back("b " + joined(words_of(view.lighting.background), " "));
+  return lines;
+}
+
+View view_of(const SceneFile& file) {
+  return {file.camera, {file.scene.lights, file.scene.background}, file.default_light, file.reach};
+}
+
+void apply_view(const ViewOptions& options, SceneFile& file) {
+  if (options.lights_follow && !file.default_light)
+    throw std::invalid_argument(
+        "--lights: expected a mesh without lights, found a scene with its own");
+  View view = changed(view_of(file), options, file.frame);
+  file.camera = view.camera;
+  file.scene.lights = std::move(view.lighting.lights);
+  file.scene.background = view.lighting.background;
+}
+
+View changed(View view, const ViewOptions& options, const Frame& frame) {
+  Camera& camera = view.camera;
+  if (options.eye)
+    camera.eye = frame.inside(*options.eye);
+  if (options.at)
+    camera.at = frame.inside(*options.at);
+  if (options.up)
+    camera.up = in_floats(*options.up);
+  camera.angle_deg = options.angle_deg.value_or(camera.angle_deg);
+  if (options.orthographic_height)
+    camera.orthographic_height = *options.orthographic_height * frame.scale;
+  expect_valid(camera);
+  if (options.orbit) {
+    const bool fits = view.reach > 0 && !options.eye && !options.at;
+    Camera wide = camera;  // an orthographic camera stands where another would
+    wide.orthographic_height = 0;
+    go_around(
+        *options.orbit, fits ? distance_of(view.reach, wide) : CameraAxes(camera).distance, camera);
+    expect_valid(camera);
+  }
+  if (view.made_up_lights && options.lights_follow.value_or(true))
+    view.lighting.lights = lights_around(camera);
+  view.lighting.background = options.background.value_or(view.lighting.background);
+  return view;
+}
+
+std::vector<Light> lights_around(const Camera& camera) {
+  const CameraAxes axes(camera);
+  const auto position = [&](double to_back, double to_right, double up) {
+    const Double3 across = sum(axes.distance * to_right, axes.right, axes.distance * up, axes.up);
+    return in_floats(
+        sum(1, in_double(camera.at), 1, sum(axes.distance * to_back, axes.back, 1, across)));
+  };
+  return {{position(1.2, -.55, .6), {.82f, .78f, .70f}, {}, {}},
+          {camera.eye, {.30f, .32f, .37f}, {}, {}},
+          {position(-.4, .8, .55), {.34f, .38f, .44f}, {}, {}}};
+}
+
+}  // namespace grelha

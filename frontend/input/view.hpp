@@ -1,0 +1,64 @@
+#pragma once
+// Another view of a scene than its own: from where it is seen, and in which light.
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "frontend/scene/scene_file.hpp"
+#include "grelha/render_options.hpp"
+
+namespace grelha {
+
+inline constexpr double kFilledByMesh = .9;  ///< of a picture's height, by a bare mesh
+
+/// A camera's way around the point it looks at, from where it stands.
+struct Orbit {
+  double azimuth_deg = 0;    ///< to the right, around the up direction
+  double elevation_deg = 0;  ///< then up, over the top as well
+  double zoom = 1;           ///< divides the angle, or the height of an orthographic picture
+};
+
+inline constexpr double kMostTurn = 36000;  ///< degrees
+inline constexpr double kLeastZoom = .001, kMostZoom = 1000;
+
+/// What replaces a scene's own view, in the coordinates of its file; absent: as the scene says.
+struct ViewOptions {
+  using Point = std::optional<std::array<double, 3>>;
+  Point eye, at, up;
+  std::optional<double> angle_deg, orthographic_height;
+  std::optional<Orbit> orbit;
+  std::optional<Float3> background;
+  /// made-up lights move with the camera, or stay where they are; absent: they move
+  std::optional<bool> lights_follow;
+};
+
+/// A camera and the light it sees.
+struct View {
+  Camera camera;
+  Lighting lighting;
+  bool made_up_lights = false;
+  double reach = 0;  ///< SceneFile::reach of a made-up camera, else 0
+};
+
+/// The view of a file.
+View view_of(const SceneFile& file);
+
+/// The view that options make of another one. A bare mesh is seen from a distance that is the same
+/// all around, at which it fits into the picture. Throws std::invalid_argument for a camera that
+/// cannot see.
+View changed(View view, const ViewOptions& options, const Frame& frame);
+
+/// Changes the view of a file. Throws as changed() does, and for --lights without made-up lights.
+void apply_view(const ViewOptions& options, SceneFile& file);
+
+/// The view as options and, unless it is orthographic, as lines of NFF, with the lights and the
+/// background where they are made up. Each number reads back as the same.
+std::vector<std::string> lines_of(const View& view, const Frame& frame);
+
+/// Three lights for a camera: a key light above its left shoulder, a fill at its eye, so that no
+/// face it sees is black, and one from behind on the edges.
+std::vector<Light> lights_around(const Camera& camera);
+
+}  // namespace grelha

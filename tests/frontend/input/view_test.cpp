@@ -1,0 +1,297 @@
+// Tests views that options make of a scene's own, and that they print as they were.
+#include "frontend/input/view.hpp"
+
+#include <filesystem>
+#include <numbers>
+
+#include "frontend/input/read_scene.hpp"
+#include "grelha/query.hpp"
+#include "grelha/render.hpp"
+#include "tests/support/oracle.hpp"
+#include "tests/support/parsing.hpp"
+#include "tests/support/random.hpp"
+#include "tests/support/reading.hpp"
+
+#include <gtest/gtest.h>
+
+namespace grelha::test {
+namespace {
+
+using oracle::Real;
+using oracle::V;
+
+const std::string kTorus = GRELHA_SOURCE_DIR "/scenes/data/torus.ply";
+
+SceneFile read(const std::string& path) {
+  return read_scene(path, [](const std::string&) {});
+}
+
+/// A view's azimuth and elevation around its up direction, and distance, in long double.
+struct Place {
+  Place(const Camera& c, const V& pole, const V& front) {
+    const V back = V(c.eye) - V(c.at);
+    distance = length(back);
+    elevation = std::asin(dot(back, pole) / distance);
+    azimuth = std::atan2(dot(back, cross(pole, front)), dot(back, front));
+  }
+  Real azimuth, elevation, distance;
+};
+
+/// Around any axis, by any angles: the eye goes that far, and the distance stays. Floats of the eye
+/// are off by an eps of its coordinates, seen from `at`.
+TEST(Orbit, GoesAroundThePointLookedAt) {
+  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+    Random random(seed);
+    View view;
+    view.camera.at = random.point(1);
+    view.camera.up = random.direction();
+    view.camera.eye = at(view.camera.at, random.log_in(.1, 10), random.direction());
+    if (!camera_is_valid(view.camera))
+      continue;
+    const V pole = oracle::unit(V(view.camera.up));
+    const V back = V(view.camera.eye) - V(view.camera.at);
+    const V front = oracle::unit(back - dot(back, pole) * pole);
+    const Place before(view.camera, pole, front);
+    const double degree = 180 / std::numbers::pi;
+    ViewOptions options;
+    const double least = -89 - double(before.elevation) * degree,
+                 most = 89 - double(before.elevation) * degree;
+    options.orbit = {random.in(-400, 400), random.in(least, most), 1};
+    const View seen = changed(view, options, {});
+    const Place after(seen.camera, pole, front);
+    const Real bound = 8 * oracle::kEps * (1 + length(V(view.camera.at)) / before.distance) /
+                       std::cos(after.elevation);
+    const Real turned = std::remainder(after.azimuth - Real(options.orbit->azimuth_deg) / degree,
+                                       2 * std::numbers::pi_v<Real>);
+    EXPECT_LE(std::abs(turned), bound) << "seed " << seed;
+    EXPECT_LE(
+        std::abs(after.elevation - before.elevation - Real(options.orbit->elevation_deg) / degree),
+        bound)
+        << "seed " << seed;
+    EXPECT_LE(std::abs(after.distance / before.distance - 1), bound) << "seed " << seed;
+    const V right = oracle::unit(cross(V(seen.camera.up), V(seen.camera.eye) - V(seen.camera.at)));
+    EXPECT_LE(std::abs(dot(right, pole)), bound) << "the horizon is level, seed " << seed;
+  }
+}
+
+/// Over a pole, where the up direction itself lies along the view, the picture only turns on.
+TEST(Orbit, CrossesThePoles) {
+  View view;
+  view.camera.eye = {0, 0, 3};
+  for (const double elevation : {90., -90., 180., 270.}) {
+    ViewOptions options;
+    options.orbit = {0, elevation, 1};
+    const Camera c = changed(view, options, {}).camera;
+    const double sine = elevation == 90 ? 1 : elevation == 180 ? 0 : -1;
+    EXPECT_EQ(c.eye, (Float3{0, float(3 * sine), elevation == 180 ? -3.f : 0.f})) << elevation;
+    EXPECT_TRUE(camera_is_valid(c));
+  }
+  ViewOptions turn;
+  turn.orbit = {360, 0, 1};
+  EXPECT_EQ(changed(view, turn, {}).camera.eye, view.camera.eye);
+}
+
+TEST(Orbit, ZoomDividesTheAngleOrTheHeight) {
+  View view;
+  ViewOptions options;
+  options.orbit = {0, 0, 4};
+  EXPECT_EQ(changed(view, options, {}).camera.angle_deg, 45. / 4);
+  options.orthographic_height = 6;
+  EXPECT_EQ(changed(view, options, {{}, 2}).camera.orthographic_height, 3)
+      << "6 in the file is 12 in a scene of twice its size";
+}
+
+/// The scans beside the project, and the torus in it.
+std::vector<std::string> meshes() {
+  std::vector<std::string> all{kTorus};
+  for (const char* name : {"bunny10k.ply", "armadillo.ply", "horse.ply", "screwdriver.ply"})
+    if (const std::string path = GRELHA_SHARED_SCENES "/ply/" + std::string(name);
+        std::filesystem::exists(path))
+      all.push_back(path);
+  return all;
+}
+
+/// What hits of the camera's rays look like, without the light that the material gives off itself.
+/// Faces seen at less than 15 degrees are left out: cos 75 times the fill is .06.
+float darkest(const SceneFile& file, const World& world, const View& view) {
+  RenderOptions options;
+  options.lighting = view.lighting;
+  RenderStats stats;
+  const Image image = render(world, view.camera, options, stats);
+  float least = 1;
+  std::vector<Ray> rays(std::size_t(view.camera.width));
+  for (int y = 0; y < view.camera.height; ++y) {
+    camera_rays(view.camera, y, rays);
+    for (std::size_t x = 0; x < rays.size(); ++x) {
+      const Ray& ray = rays[x];
+      const Hit hit = closest(world, ray);
+      if (!hit || std::abs(dot(surface(world, ray, hit).shading, ray.dir)) < .26f)
+        continue;
+      const float* const pixel = image.row(y) + 3 * x;
+      least = std::min({least, pixel[0], pixel[1], pixel[2]});
+    }
+  }
+  EXPECT_LT(least, 1) << "nothing is seen of " << file.counts.ply << " faces";
+  return least;
+}
+
+/// From 26 directions around a mesh no face is darker than .05: the lights follow.
+TEST(MadeUpLights, FollowTheCamera) {
+  for (const std::string& path : meshes()) {
+    SceneFile file = read(path);
+    file.scene.materials.at(0).emission = {};
+    const World world(file.scene, {});
+    View view = view_of(file);
+    view.camera.width = view.camera.height = 64;
+    float stay = 1;
+    for (int direction = 0; direction < 27; ++direction) {
+      const double x = direction % 3 - 1, y = direction / 3 % 3 - 1, z = direction / 9 - 1;
+      const double d = length(V(view.camera.eye) - V(view.camera.at));
+      const double n = std::sqrt(x * x + y * y + z * z);
+      if (n == 0)
+        continue;
+      const Float3 at = view.camera.at;
+      ViewOptions options;
+      options.eye = {at.x + d * x / n, at.y + d * y / n, at.z + d * z / n};
+      options.up = {0, x == 0 && z == 0 ? 0. : 1., x == 0 && z == 0 ? 1. : 0.};
+      EXPECT_GT(darkest(file, world, changed(view, options, {})), .05f)
+          << path << " from " << x << ' ' << y << ' ' << z;
+      options.lights_follow = false;
+      stay = std::min(stay, darkest(file, world, changed(view, options, {})));
+    }
+    EXPECT_EQ(stay, 0) << "some face is dark where they stay with the mesh";
+  }
+}
+
+/// Seen all around, a bare mesh never leaves the picture.
+TEST(MadeUpCamera, FitsAllAround) {
+  for (const std::string& path : meshes()) {
+    SceneFile file = read(path);
+    const World world(file.scene, {});
+    for (const double elevation : {-110., -50., 0., 40.})
+      for (double azimuth = 0; azimuth < 360; azimuth += 45) {
+        View view = view_of(file);
+        view.camera.width = view.camera.height = 48;
+        ViewOptions options;
+        options.orbit = {azimuth, elevation, 1};
+        const Camera c = changed(view, options, {}).camera;
+        int most = 0;
+        std::vector<Ray> rays(48);
+        for (int y = 0; y < 48; ++y) {
+          camera_rays(c, y, rays);
+          for (int x = 0; x < 48; ++x)
+            if (closest(world, rays[std::size_t(x)]))
+              most = std::max({most, std::abs(2 * x - 47), std::abs(2 * y - 47)});
+        }
+        EXPECT_LE(most, 45) << path << ' ' << azimuth << ' ' << elevation;
+        EXPECT_GT(most, 12) << "it is not lost in it either";
+      }
+  }
+}
+
+bool same_camera(const Camera& a, const Camera& b) {
+  return a.eye == b.eye && a.at == b.at && a.up == b.up && a.angle_deg == b.angle_deg &&
+         a.orthographic_height == b.orthographic_height && a.width == b.width &&
+         a.height == b.height;
+}
+
+/// Options and lines of NFF that are printed make the same view, to the bit, also in a frame.
+TEST(PrintedView, ReadsBackAsItWas) {
+  SceneFile file = read(kTorus);
+  for (const Frame& frame : {Frame{}, Frame{{4096, -1 << 20, .5}, 1}})
+    for (std::uint64_t seed = 0; seed < 50; ++seed) {
+      Random random(seed);
+      ViewOptions options;
+      options.orbit = {random.in(0, 360), random.in(-60, 60), random.in(.5, 2)};
+      if (seed % 3 == 0)
+        options.orthographic_height = random.in(1, 2);
+      const View view = changed(view_of(file), options, frame);
+      const std::vector<std::string> lines = lines_of(view, frame);
+      const auto again = std::get<RenderCommand>(parse("render x.ply " + lines.at(0)));
+      EXPECT_TRUE(same_camera(changed(view_of(file), again.input.view, frame).camera, view.camera))
+          << lines[0];
+      if (seed % 3 == 0)
+        continue;
+      std::string text;
+      for (std::size_t i = 1; i < lines.size(); ++i)
+        text += lines[i] + '\n';
+      ReadOptions in_frame;
+      in_frame.frame = frame;
+      const SceneFile read = read_nff("x.nff", text, {}, in_frame);
+      EXPECT_TRUE(same_camera(read.camera, view.camera)) << text;
+      EXPECT_EQ(read.scene.background, view.lighting.background);
+      ASSERT_EQ(read.scene.lights.size(), 3u);
+      for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(read.scene.lights[i].position, view.lighting.lights[i].position);
+        EXPECT_EQ(read.scene.lights[i].color, view.lighting.lights[i].color);
+      }
+    }
+}
+
+TEST(View, OfASceneKeepsItsLights) {
+  SceneFile file = read_with_view("l 1 2 3 .5 .5 .5\n" + kFill + "s 0 0 0 1\n").file;
+  ViewOptions options;
+  options.orbit = {180, 0, 1};
+  options.background = {1, .5f, 0};
+  apply_view(options, file);
+  EXPECT_EQ(file.camera.eye, (Float3{0, 0, -5}));
+  EXPECT_EQ(file.scene.lights.at(0).position, (Float3{1, 2, 3}));
+  EXPECT_EQ(file.scene.background, (Float3{1, .5f, 0}));
+  EXPECT_EQ(lines_of(view_of(file), {}).size(), 2u) << "the lights stand in the file";
+  options.lights_follow = true;
+  EXPECT_THROW(apply_view(options, file), std::invalid_argument);
+}
+
+TEST(View, ACameraThatCannotSeeIsRefused) {
+  SceneFile file = read(kTorus);
+  const auto message = [&](const char* words) {
+    const auto command = std::get<RenderCommand>(parse("render x.ply " + std::string(words)));
+    return message_of([&] { changed(view_of(file), command.input.view, {}); });
+  };
+  EXPECT_EQ(message("--eye 1,2,3 --at 0,0,0"), "");
+  EXPECT_NE(message("--eye 1,2,3 --at 1,2,3"), "");
+  EXPECT_NE(message("--eye 0,0,3 --at 0,0,0 --up 0,0,1"), "");
+  EXPECT_NE(message("--orbit 0,0,.1"), "") << "300 degrees";
+}
+
+TEST(ViewOptions, AreRead) {
+  const ViewOptions v =
+      std::get<RenderCommand>(parse("render x.ply --eye 1,-2,3e5 --at -.5,0,0 --up 0,0,1 "
+                                    "--angle 12.5 --orbit -30,400.5,2 --orthographic 7 "
+                                    "--background .5 --lights mesh"))
+          .input.view;
+  EXPECT_EQ(v.eye, (std::array{1., -2., 3e5}));
+  EXPECT_EQ(v.at, (std::array{-.5, 0., 0.}));
+  EXPECT_EQ(v.up, (std::array{0., 0., 1.}));
+  EXPECT_EQ(v.angle_deg, 12.5);
+  EXPECT_EQ(v.orbit->azimuth_deg, -30);
+  EXPECT_EQ(v.orbit->elevation_deg, 400.5);
+  EXPECT_EQ(v.orbit->zoom, 2);
+  EXPECT_EQ(v.orthographic_height, 7);
+  EXPECT_EQ(v.background, (Float3{.5f, .5f, .5f}));
+  EXPECT_EQ(v.lights_follow, false);
+  const auto info = std::get<InfoCommand>(parse("info x.ply --orbit 90,0 --background 1,.5,0"));
+  EXPECT_EQ(info.input.view.orbit->zoom, 1);
+  EXPECT_EQ(info.input.view.background, (Float3{1, .5f, 0}));
+  EXPECT_FALSE(info.input.view.eye || info.input.view.lights_follow);
+}
+
+TEST(ViewOptions, ThatCannotBeAreRefused) {
+  const auto error = [](const char* words) {
+    return error_of("render x.ply " + std::string(words));
+  };
+  EXPECT_EQ(error("--eye 1,2"), "--eye: expected X,Y,Z, found \"1,2\"");
+  EXPECT_EQ(error("--at 1,2,nan"), "--at: expected numbers X,Y,Z within 1e18, found \"nan\"");
+  EXPECT_EQ(error("--angle 180"), "--angle: expected degrees between 0 and 180, found \"180\"");
+  EXPECT_EQ(error("--orbit 1"),
+            "--orbit: expected AZIMUTH,ELEVATION or AZIMUTH,ELEVATION,ZOOM, found \"1\"");
+  EXPECT_EQ(error("--orbit 1,2,0"), "--orbit: expected a zoom of .001 to 1000, found \"0\"");
+  EXPECT_EQ(error("--orbit 1e9,2"), "--orbit: expected degrees, at most 100 turns, found \"1e9\"");
+  EXPECT_EQ(error("--orthographic 0"),
+            "--orthographic: expected a height above 0 and up to 1e18, found \"0\"");
+  EXPECT_EQ(error("--background 1,2"), "--background: expected R,G,B or one number, found \"1,2\"");
+  EXPECT_EQ(error("--lights eye"), "--lights: expected one of camera, mesh, found \"eye\"");
+}
+
+}  // namespace
+}  // namespace grelha::test
