@@ -13,6 +13,7 @@ target_sources(options_test PRIVATE frontend/cli/option_checks_test.cpp
 grelha_test(frontend/commands/report unit grelha::frontend nlohmann_json::nlohmann_json)
 grelha_test(frontend/cli/program image grelha::frontend grelha::scenes nlohmann_json::nlohmann_json)
 target_sources(program_test PRIVATE frontend/cli/compare_images_test.cpp
+  frontend/cli/scans_test.cpp
   frontend/cli/memory_test.cpp)
 grelha_test(frontend/cli/files image grelha::frontend)
 grelha_test(frontend/cli/hostile image grelha::frontend)

@@ -11,7 +11,6 @@ import subprocess
 import sys
 
 LATER = {
-    "colour.ply": "colours of vertices are not read",
     "skip_cost.py": "a claim of speed: skip costs 5 to 7 times t_min",
     "p57_far_closest_cost.py": "a claim of speed: closest points from afar are linear",
 }
@@ -129,6 +128,12 @@ class Faults:
     def patch_uv_nff(self):
         status, said, values = self.render("patch_uv.nff")
         return status == 0 and "texture" in said and len(set(values)) > 3
+
+    def colour_ply(self):
+        values = self.render("colour.ply")[2]
+        pixels = list(zip(values[::3], values[1::3], values[2::3]))
+        return all(any(p[i] > 3 * p[j] and p[i] > 3 * p[k] for p in pixels)
+                   for i, j, k in ((0, 1, 2), (1, 0, 2), (2, 0, 1)))
 
     def area_L_nff(self):
         _, said, values = self.render("area_L.nff")

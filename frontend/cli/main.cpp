@@ -174,7 +174,9 @@ int run(const MergeCommand& command) {
     check_image_size(format, a.width, a.height);
     write_image(command.output,
                 picture_so_far(a),
-                {format, command.srgb ? Tone::srgb : Tone::authored, notes_of(joined.identity)});
+                {format,
+                 command.srgb || is_colored(joined.identity) ? Tone::srgb : Tone::authored,
+                 notes_of(joined.identity)});
   }
   const std::size_t n = command.parts.size();
   const std::string summary = printable_line(name_of_file(command.output)) + ": " +

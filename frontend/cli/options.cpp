@@ -64,6 +64,7 @@ void add_input_options(CLI::App& app, InputOptions& input) {
   app.add_flag("--allow-outside",
                input.read.allow_outside,
                "scenes may name files outside their own folder");
+  app.add_flag("!--no-colors", input.read.colors, "leave out the colours that meshes have");
   app.add_flag("--strict",
                input.strict,
                "take a warning for an error: exit status 2; 3 where --error is not met");

@@ -146,6 +146,7 @@ class SceneRender {
     check_shareable(command_, ranks_);
     scene_ = scene_digest(file_);
     resolved_ = command_;
+    resolved_.colored = file_.colors.any();
     resolved_.render.phases = !command_.stats.empty();
     apply_effects(command_.effects, file_, resolved_.render);
   }

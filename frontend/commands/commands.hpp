@@ -79,6 +79,7 @@ struct RenderCommand {
   std::string stats;                   ///< file for the counts, or empty
   std::string samples_map, error_map;  ///< pictures of sample counts and of errors, or empty
   bool quiet = false, srgb = false;
+  bool colored = false;  ///< the scene has colours that are light: a PNG takes the sRGB curve
 };
 
 struct InfoCommand {

@@ -44,6 +44,7 @@ Needs needs_of(const SceneFile& file) {
           {"cones", geometry.cones.size() > 0},
           {"planes", geometry.planes.size() > 0},
           {"smooth_normals", has_normals(geometry.triangles)},
+          {"colors", file.colors.any()},
           {"reflection", glass || some([](const Material& m) { return any(m.mirror); })},
           {"refraction", glass},
           {"fresnel", some([](const Material& m) { return m.fresnel && m.transmission > 0; })},

@@ -187,6 +187,16 @@ std::string memory_text(const SceneMemory& memory) {
       double(memory.grids) / 1e6);
 }
 
+std::string colors_text(const ColorCounts& colors) {
+  if (!colors.any())
+    return "";
+  return std::string("colors        of ") +
+         (!colors.of_faces     ? "vertices"
+          : colors.of_vertices ? "vertices and faces"
+                               : "faces") +
+         (colors.alpha ? ", without their alpha\n" : "\n");
+}
+
 std::string view_text(const SceneFile& file) {
   std::string text;
   for (const std::string& line : lines_of(view_of(file), file.frame))
@@ -332,7 +342,7 @@ std::string info_text(const std::string& path,
     text += std::string("aabb          read as ") + box_order_name(file.box_order) + '\n';
   text += view_text(file);
   text += "materials     " + std::to_string(file.counts.materials) + '\n';
-  text += bounds_text(file.frame, bounds_of(g));
+  text += colors_text(file.colors) + bounds_text(file.frame, bounds_of(g));
   if (file.frame != Frame{})
     text += "coordinates   " + text_of(file.frame) + '\n';
   text += memory_text(memory);

@@ -6,8 +6,21 @@
 
 namespace grelha {
 
+namespace {
+
+/// By Newton's iteration: std::pow's last bit depends on the machine.
+double fifth_root(double a) {
+  double root = std::max(a, 1.);  // from above every step comes nearer
+  for (int step = 0; step < 64; ++step)
+    root -= (root - a / (root * root * root * root)) / 5;
+  return root;
+}
+
+}  // namespace
+
 double light_of_srgb(double encoded) {
-  return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+  const double linear = (encoded + 0.055) / 1.055, square = linear * linear;
+  return encoded <= 0.04045 ? encoded / 12.92 : square * fifth_root(square);
 }
 
 namespace {

@@ -104,12 +104,17 @@ struct Extent {
 
 }  // namespace
 
-Material default_mesh_material() {
+Material default_mesh_material(bool has_colors) {
   Material m;
+  m.shine = 20;
+  if (has_colors) {
+    m.diffuse = {0.9f, 0.9f, 0.9f};
+    m.specular = {0.04f, 0.04f, 0.04f};
+    return m;
+  }
   m.diffuse = {0.80f, 0.78f, 0.75f};
   m.specular = {0.10f, 0.10f, 0.10f};
   m.emission = {0.10f, 0.10f, 0.11f};
-  m.shine = 20;
   return m;
 }
 
@@ -147,6 +152,8 @@ void add_default_view(SceneFile& file) {
     file.reach = std::max(file.reach, length(moved(p, -1, at)));
   file.scene.lights = lights_around(file.camera);
   file.scene.background = {0.62f, 0.68f, 0.76f};
+  if (file.colors.any())  // they are light: this looks the same through the sRGB curve
+    file.scene.background = {0.34f, 0.42f, 0.54f};
   file.default_camera = file.default_light = true;
 }
 

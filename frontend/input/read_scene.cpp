@@ -45,17 +45,17 @@ bool is_ply(const std::string& path, std::string_view bytes) {
 SceneFile read_mesh_only(const std::string& path,
                          std::string bytes,
                          const Warn& warn,
-                         const Frame& frame,
+                         const ReadOptions& options,
                          LoadProgress& progress) {
   SceneFile file;
-  file.frame = frame;
+  file.frame = options.frame;
   file.source_bytes = bytes.size();
-  Mesh mesh = read_ply_mesh(path, bytes, warn, &progress, frame);
+  Mesh mesh = read_ply_mesh(path, bytes, warn, &progress, options.frame, options.colors);
   std::string().swap(bytes);  // they are as large as the mesh
   file.counts.ply = mesh.face_count();
   if (file.counts.ply == 0)
     file.points = mesh.vertex_count();
-  file.scene.materials.push_back(default_mesh_material());
+  file.scene.materials.push_back(default_mesh_material(!mesh.red.empty()));
   const CrossedFaces crossed = SceneBuilder(file).mesh(std::move(mesh), 0);
   if (const std::string text = crossed.text(); !text.empty() && warn)
     warn(path + ": warning: " + text);
@@ -88,7 +88,7 @@ SceneFile parse_scene(const std::string& path,
                       const Warn& warn,
                       const ReadOptions& options,
                       LoadProgress& progress) {
-  return is_ply(path, bytes) ? read_mesh_only(path, std::move(bytes), warn, options.frame, progress)
+  return is_ply(path, bytes) ? read_mesh_only(path, std::move(bytes), warn, options, progress)
                              : read_nff(path, bytes, warn, options, &progress);
 }
 

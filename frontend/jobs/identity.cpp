@@ -11,6 +11,8 @@
 namespace grelha {
 namespace {
 
+constexpr const char* kColored = " colors=light";
+
 /// Digests the length as well; otherwise the end of one array could be the beginning of the next.
 template <class T>
 void take(Digest& digest, const std::vector<T>& values) {
@@ -40,6 +42,8 @@ void take(Digest& digest, const Geometry& g) {
   const auto& [s, t, c, p, objects] = g;
   take_all(digest, s.x, s.y, s.z, s.radius, s.material);
   take_all(digest, t.x, t.y, t.z, t.nx, t.ny, t.nz, t.a, t.b, t.c, t.material);
+  if (!t.red.empty())
+    take_all(digest, t.red, t.green, t.blue);
   take_all(digest,
            c.base_x,
            c.base_y,
@@ -108,12 +112,16 @@ std::string settings_text(const RenderCommand& resolved, const Camera& camera) {
   if (e.glossy)
     words +=
         " roughness=" + text(e.glossy->roughness) + " gloss-rays=" + std::to_string(s.glossy_rays);
-  return words;
+  return resolved.colored ? words + kColored : words;
 }
 
 std::string scene_name(const std::string& path) {
   const std::string picture = default_image(path);
   return printable(picture.substr(0, picture.rfind('.')));
+}
+
+bool is_colored(const Identity& identity) {
+  return identity.settings.ends_with(kColored);
 }
 
 const Note kSoftware{"Software", "grelha " GRELHA_VERSION};

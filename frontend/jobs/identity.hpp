@@ -24,6 +24,9 @@ std::string scene_digest(const SceneFile& file);
 /// packet, grid ...) are left out.
 std::string settings_text(const RenderCommand& resolved, const Camera& camera);
 
+/// Returns true for a picture of colours that are light: a PNG of it takes the sRGB curve.
+bool is_colored(const Identity& identity);
+
 /// The note that every picture has.
 extern const Note kSoftware;
 

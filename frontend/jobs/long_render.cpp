@@ -291,7 +291,7 @@ ImageStyle LongRender::style() const {
   Identity identity = identity_;
   identity.settings = repeatable(identity.settings, picture_.total_samples());
   ImageStyle style{format_of(command_.image, command_.format),
-                   command_.srgb ? Tone::srgb : Tone::authored,
+                   command_.srgb || command_.colored ? Tone::srgb : Tone::authored,
                    notes_of(identity),
                    layers_};
   char text[32];

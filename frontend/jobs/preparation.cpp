@@ -29,7 +29,8 @@ constexpr std::uint64_t kProgram = 12'000'000;  ///< bytes of the program itself
 std::uint64_t geometry_bytes(const Scene& scene) {
   const Geometry& g = scene.geometry;
   const Triangles& t = g.triangles;
-  return 20 * g.spheres.size() + 16 * t.size() + (12 + (t.nx.empty() ? 0 : 12)) * t.vertex_count() +
+  return 20 * g.spheres.size() + 16 * t.size() +
+         (12 + (t.nx.empty() ? 0 : 12) + (t.red.empty() ? 0 : 12)) * t.vertex_count() +
          36 * g.cones.size() + 28 * g.planes.size() + sizeof(Material) * scene.materials.size();
 }
 

@@ -42,6 +42,7 @@ NffMeshFiles::NffMeshFiles(const std::string& scene,
     : folder_(std::filesystem::path(scene).parent_path()),
       warn_(warn),
       allow_outside_(options.allow_outside),
+      colors_(options.colors),
       load_(progress) {}
 
 /// Returns true if a file lies outside the scene's folder, after following all links. The reader
@@ -88,7 +89,7 @@ Mesh NffMeshFiles::read(const NffInput& input,
       validate_start(path, true, text, fresh);
     };
     const std::string bytes = load_file(path, load_, false, validate);
-    Mesh mesh = read_ply_mesh(path, bytes, warn_, load_, scene.frame);
+    Mesh mesh = read_ply_mesh(path, bytes, warn_, load_, scene.frame, colors_);
     const std::uint64_t held = input.words.size() + bytes.size();
     scene.source_bytes = std::max(scene.source_bytes, held);
     check_image_size(input, name, mesh, scene.scene.geometry.triangles);

@@ -36,7 +36,7 @@ class NffMeshFiles {
 
   std::filesystem::path folder_;
   const Warn& warn_;
-  bool allow_outside_;
+  bool allow_outside_, colors_;
   LoadProgress* load_;
 };
 

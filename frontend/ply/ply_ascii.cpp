@@ -100,7 +100,7 @@ void PlyAscii::read(const PlyElement& element, const PlyPlan& plan, Mesh& mesh, 
   if (element.properties.empty())
     return;
   std::vector<PlyColumn> targets(element.properties.size());
-  for (int i = 0; i < 6; ++i)
+  for (int i = 0; i < PlyPlan::kColumns; ++i)
     if (plan.columns[i] >= 0)
       targets[std::size_t(plan.columns[i])] = column(mesh, plan, i);
   for (std::uint64_t row = 0; row < element.count; ++row) {

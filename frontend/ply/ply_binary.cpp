@@ -111,7 +111,7 @@ void PlyBinary::read_fixed(const PlyElement& element, const PlyPlan& plan, Mesh&
   }
   for (std::uint64_t row = 0; row < element.count; row += kBlock) {
     const std::size_t rows = std::size_t(std::min(kBlock, element.count - row));
-    for (int i = 0; i < 6; ++i) {
+    for (int i = 0; i < PlyPlan::kColumns; ++i) {
       if (plan.columns[i] < 0)
         continue;
       const auto k = std::size_t(plan.columns[i]);
@@ -151,7 +151,7 @@ void PlyBinary::read_rows(const PlyElement& element,
                           Mesh& mesh,
                           PlyFaces& faces) {
   std::vector<PlyColumn> targets(element.properties.size());
-  for (int i = 0; i < 6; ++i)
+  for (int i = 0; i < PlyPlan::kColumns; ++i)
     if (plan.columns[i] >= 0)
       targets[std::size_t(plan.columns[i])] = column(mesh, plan, i);
   for (std::uint64_t row = 0; row < element.count; ++row) {

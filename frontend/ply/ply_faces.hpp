@@ -56,22 +56,37 @@ class PlyFaces {
 
 /// The properties used of one element: -1, or the index of a property.
 struct PlyPlan {
-  int columns[6] = {-1, -1, -1, -1, -1, -1};  ///< x y z nx ny nz of `vertex`
-  int list = -1;                              ///< the indices of `face` or `tristrips`
-  Frame frame{};                              ///< of x y z
+  static constexpr int kColumns = 9;
+  /// x y z nx ny nz of `vertex`; red green blue of it, or of `face`
+  int columns[kColumns] = {-1, -1, -1, -1, -1, -1, -1, -1, -1};
+  int list = -1;  ///< the indices of `face` or `tristrips`
+  Frame frame{};  ///< of x y z
+  PlyType color_type{};
 };
+
+/// The light of a byte of sRGB, or of what rounds to one.
+float light_of_byte(double byte);
 
 /// The array that receives the numbers of a property, and their transformation.
 struct PlyColumn {
   std::vector<float>* to = nullptr;
   double minus = 0, times = 1;
-  bool is_identity() const { return minus == 0 && times == 1; }
-  float value(double number) const { return static_cast<float>((number - minus) * times); }
+  bool is_srgb = false;
+  bool is_identity() const { return minus == 0 && times == 1 && !is_srgb; }
+  float value(double number) const {
+    return is_srgb ? light_of_byte(number) : static_cast<float>((number - minus) * times);
+  }
 };
 
 /// Returns the column for an element of PlyPlan::columns.
 inline PlyColumn column(Mesh& mesh, const PlyPlan& plan, int i) {
-  std::vector<float>* const all[] = {&mesh.x, &mesh.y, &mesh.z, &mesh.nx, &mesh.ny, &mesh.nz};
+  std::vector<float>* const all[] = {
+      &mesh.x, &mesh.y, &mesh.z, &mesh.nx, &mesh.ny, &mesh.nz, &mesh.red, &mesh.green, &mesh.blue};
+  if (i >= 6)
+    return {all[i],
+            0,
+            plan.color_type == PlyType::kUint16 ? 1. / 65535 : 1,
+            plan.color_type == PlyType::kUint8};
   if (i >= 3)
     return {all[i]};
   return {all[i], plan.frame.offset[std::size_t(i)], plan.frame.scale};

@@ -8,8 +8,10 @@ namespace grelha {
 
 /// Faces over shared vertices as a file gives them, indices already checked.
 struct Mesh {
-  std::vector<float> x, y, z;          ///< [vertices]
-  std::vector<float> nx, ny, nz;       ///< [vertices] or empty
+  std::vector<float> x, y, z;           ///< [vertices]
+  std::vector<float> nx, ny, nz;        ///< [vertices] or empty
+  std::vector<float> red, green, blue;  ///< light [vertices], or [faces], or empty
+  bool colors_of_faces = false, has_alpha = false;
   std::vector<std::uint32_t> indices;  ///< vertices of all faces, one face after the other
   std::vector<std::uint32_t> sizes;    ///< [faces] corners of each, or empty: all are triangles
   std::size_t vertex_count() const { return x.size(); }

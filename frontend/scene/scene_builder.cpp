@@ -95,7 +95,7 @@ void SceneBuilder::plane(Float3 normal, float distance, std::uint32_t material) 
     file_.scene.geometry.planes.add(point, unit(n), material);
 }
 
-std::uint32_t SceneBuilder::add_vertex(Float3 point, Float3 normal) {
+std::uint32_t SceneBuilder::add_vertex(Float3 point, Float3 normal, Float3 color) {
   Triangles& t = file_.scene.geometry.triangles;
   const std::size_t index = t.x.size();
   if (t.nx.empty() && !is_none(normal)) {
@@ -110,6 +110,11 @@ std::uint32_t SceneBuilder::add_vertex(Float3 point, Float3 normal) {
     t.nx.push_back(normal.x);
     t.ny.push_back(normal.y);
     t.nz.push_back(normal.z);
+  }
+  if (!t.red.empty()) {
+    t.red.push_back(color.x);
+    t.green.push_back(color.y);
+    t.blue.push_back(color.z);
   }
   return std::uint32_t(index);
 }

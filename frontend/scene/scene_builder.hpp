@@ -67,7 +67,7 @@ class SceneBuilder {
   /// Counts a primitive without area, and where it would have been.
   void drop_flat(std::initializer_list<Float3> corner_points);
   void drop_flat(std::span<const Float3> corner_points);
-  std::uint32_t add_vertex(Float3 point, Float3 normal);
+  std::uint32_t add_vertex(Float3 point, Float3 normal, Float3 color = {1, 1, 1});
   Float3 point(std::uint32_t vertex) const;
   void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t material);
   /// Returns whether anything is left of the triangle's area in floats.
@@ -83,12 +83,17 @@ class SceneBuilder {
   CrossedFaces mesh_faces(const Mesh& mesh,
                           const std::vector<bool>& bad,
                           std::uint32_t first_vertex,
-                          std::uint32_t material);
+                          std::uint32_t material,
+                          std::span<const std::uint32_t> materials);
+  std::vector<std::uint32_t> materials_of(const Mesh& mesh, std::uint32_t of);
   Result mesh_face(std::span<const std::uint32_t> corner_points,
                    std::uint32_t first_vertex,
                    std::uint32_t material);
   void add_intersections();
   void append_vertices(Mesh& mesh);
+  std::vector<Float3> at_corners(const std::vector<float>& x,
+                                 const std::vector<float>& y,
+                                 const std::vector<float>& z) const;
 
   SceneFile& file_;
   PolygonSplitter splitter_;

@@ -1,5 +1,7 @@
 // Meshes in a scene, as SceneBuilder puts them there.
 #include <algorithm>
+#include <array>
+#include <map>
 #include <utility>
 
 #include "frontend/scene/scene_builder.hpp"
@@ -17,6 +19,16 @@ void SceneBuilder::append_vertices(Mesh& mesh) {
     else
       all.insert(all.end(), more.begin(), more.end());
   };
+  // `otherwise`: of vertices without any, where others have some
+  const auto append_some =
+      [&](bool has, std::vector<float>& all, std::vector<float>& more, float otherwise) {
+        if (has || !all.empty())
+          all.resize(before, otherwise);
+        if (has)
+          append(all, more);
+        else if (!all.empty())
+          all.resize(before + count, otherwise);
+      };
   bool any_normal = false;
   for (std::size_t i = 0; i < mesh.nx.size(); ++i) {
     const Float3 n = valid_normal({mesh.nx[i], mesh.ny[i], mesh.nz[i]});
@@ -25,18 +37,13 @@ void SceneBuilder::append_vertices(Mesh& mesh) {
     mesh.nz[i] = n.z;
     any_normal = any_normal || n != Float3{};
   }
-  if (any_normal) {
-    t.nx.resize(before);
-    t.ny.resize(before);
-    t.nz.resize(before);
-    append(t.nx, mesh.nx);
-    append(t.ny, mesh.ny);
-    append(t.nz, mesh.nz);
-  } else if (!t.nx.empty()) {
-    t.nx.resize(before + count);
-    t.ny.resize(before + count);
-    t.nz.resize(before + count);
-  }
+  append_some(any_normal, t.nx, mesh.nx, 0);
+  append_some(any_normal, t.ny, mesh.ny, 0);
+  append_some(any_normal, t.nz, mesh.nz, 0);
+  const bool colors = !mesh.red.empty() && !mesh.colors_of_faces;
+  append_some(colors, t.red, mesh.red, 1);
+  append_some(colors, t.green, mesh.green, 1);
+  append_some(colors, t.blue, mesh.blue, 1);
   append(t.x, mesh.x);
   append(t.y, mesh.y);
   append(t.z, mesh.z);
@@ -74,19 +81,52 @@ SceneBuilder::Result SceneBuilder::mesh_face(std::span<const std::uint32_t> indi
   return result;
 }
 
+/// Values of vertices at the face's corners; of none: zeros.
+std::vector<Float3> SceneBuilder::at_corners(const std::vector<float>& x,
+                                             const std::vector<float>& y,
+                                             const std::vector<float>& z) const {
+  std::vector<Float3> values(face_.size());
+  for (std::size_t i = 0; i < face_.size() && !x.empty(); ++i) {
+    const std::uint32_t v = face_vertices_[i];
+    values[i] = {x[v], y[v], z[v]};
+  }
+  return values;
+}
+
 /// Adds vertices where sides of the face cross.
 void SceneBuilder::add_intersections() {
   if (splitter_.intersections().empty())
     return;
   const Triangles& t = file_.scene.geometry.triangles;
-  all_normals_.assign(face_.size(), Float3{});
-  for (std::size_t i = 0; i < face_.size() && !t.nx.empty(); ++i) {
-    const std::uint32_t v = face_vertices_[i];
-    all_normals_[i] = {t.nx[v], t.ny[v], t.nz[v]};
-  }
+  const std::vector<Float3> normals = at_corners(t.nx, t.ny, t.nz);
+  const std::vector<Float3> colors = at_corners(t.red, t.green, t.blue);
   for (const SideCrossing& crossing : splitter_.intersections())
     face_vertices_.push_back(add_vertex(at_crossing(face_, crossing),
-                                        valid_normal(at_crossing(all_normals_, crossing))));
+                                        valid_normal(at_crossing(normals, crossing)),
+                                        at_crossing(colors, crossing)));
+}
+
+/// Gives each colour of faces a material: `of` with its diffuse times the colour. Returns those of
+/// the faces; empty if faces have none. `of` follows again, for it may be the one in use.
+std::vector<std::uint32_t> SceneBuilder::materials_of(const Mesh& mesh, std::uint32_t of) {
+  if (!mesh.colors_of_faces || mesh.red.size() != mesh.face_count())
+    return {};
+  std::vector<Material>& all = file_.scene.materials;
+  const Material plain = all[of];
+  std::map<std::array<float, 3>, std::uint32_t> found;
+  std::vector<std::uint32_t> materials(mesh.face_count());
+  for (std::size_t f = 0; f < materials.size(); ++f) {
+    const std::array color{mesh.red[f], mesh.green[f], mesh.blue[f]};
+    const auto [at, is_new] = found.try_emplace(color, std::uint32_t(all.size()));
+    materials[f] = at->second;
+    if (!is_new)
+      continue;
+    const Float3& d = plain.diffuse;
+    all.push_back(plain);
+    all.back().diffuse = {d.x * color[0], d.y * color[1], d.z * color[2]};
+  }
+  all.push_back(plain);
+  return materials;
 }
 
 CrossedFaces SceneBuilder::mesh(Mesh mesh, std::uint32_t material) {
@@ -101,7 +141,11 @@ CrossedFaces SceneBuilder::mesh(Mesh mesh, std::uint32_t material) {
     bad[i] = true;
     mesh.x[i] = mesh.y[i] = mesh.z[i] = 0;
   }
+  file_.colors.of_faces |= mesh.colors_of_faces;
+  file_.colors.of_vertices |= !mesh.colors_of_faces && !mesh.red.empty();
+  file_.colors.alpha |= mesh.has_alpha;
   append_vertices(mesh);
+  const std::vector<std::uint32_t> materials = materials_of(mesh, material);
   const std::size_t wanted = t.size() + mesh.face_count();
   // at least twice as much as before: a scene may name thousands of small meshes
   if (wanted > t.a.capacity()) {
@@ -112,10 +156,10 @@ CrossedFaces SceneBuilder::mesh(Mesh mesh, std::uint32_t material) {
     t.material.reserve(capacity);
   }
   CrossedFaces crossed;
-  if (mesh.sizes.empty() && bad.empty())
+  if (mesh.sizes.empty() && bad.empty() && materials.empty())
     mesh_triangles(mesh.indices, first_vertex, material);
   else
-    crossed = mesh_faces(mesh, bad, first_vertex, material);
+    crossed = mesh_faces(mesh, bad, first_vertex, material, materials);
   const auto count = std::uint32_t(t.size()) - first_triangle;
   if (count > 0)
     file_.scene.geometry.objects.push_back({first_triangle, count});
@@ -153,7 +197,8 @@ void SceneBuilder::mesh_triangles(std::span<const std::uint32_t> indices,
 CrossedFaces SceneBuilder::mesh_faces(const Mesh& mesh,
                                       const std::vector<bool>& bad,
                                       std::uint32_t first_vertex,
-                                      std::uint32_t material) {
+                                      std::uint32_t material,
+                                      std::span<const std::uint32_t> materials) {
   CrossedFaces crossed;
   std::size_t at = 0;
   for (std::size_t f = 0, faces = mesh.face_count(); f < faces; ++f) {
@@ -165,7 +210,7 @@ CrossedFaces SceneBuilder::mesh_faces(const Mesh& mesh,
       ++file_.dropped.not_finite;
       continue;
     }
-    crossed.add(mesh_face(indices, first_vertex, material), f);
+    crossed.add(mesh_face(indices, first_vertex, materials.empty() ? material : materials[f]), f);
   }
   return crossed;
 }

@@ -49,12 +49,19 @@ enum class BoxOrder : std::uint8_t {
   kPairs,     ///< xmin xmax ymin ymax zmin zmax
 };
 
+/// Whether meshes have colours, and of what. Alpha is read by nobody.
+struct ColorCounts {
+  bool of_vertices = false, of_faces = false, alpha = false;
+  bool any() const { return of_vertices || of_faces; }
+};
+
 /// A scene file after all checks: everything the kernel needs and what the file said besides.
 struct SceneFile {
   Scene scene;
   Camera camera;
   Frame frame;  ///< in which all lies
   EntityCounts counts;
+  ColorCounts colors;
   Dropped dropped;
   std::uint64_t points = 0;  ///< vertices of meshes without faces
   LensHint lens;
@@ -75,6 +82,7 @@ using Warn = std::function<void(const std::string&)>;
 
 struct ReadOptions {
   bool allow_outside = false;  ///< a scene may name files outside its own folder
+  bool colors = true;          ///< of meshes are read
   Frame frame{};               ///< to read it in
   /// Receives the share done, 0 to 1, never less than before. If it returns false, reading throws
   /// Stopped.

@@ -93,6 +93,9 @@ struct Triangles {
   std::vector<float> x, y, z;  ///< [vertices]
   /// [vertices] normals of any length, or empty if no vertex has one; (0,0,0): this vertex has none
   std::vector<float> nx, ny, nz;
+  /// [vertices] linear light from 0 to 1 that multiplies Material::diffuse, mixed by u and v
+  /// between the vertices; or empty: 1 everywhere
+  std::vector<float> red, green, blue;
   /// [count] vertices of each triangle, counter-clockwise from the front
   std::vector<std::uint32_t> a, b, c;
   std::vector<std::uint32_t> material;                   ///< [count]

@@ -55,8 +55,9 @@ struct PlaneSpans {
 
 /// See Triangles.
 struct TriangleSpans {
-  Floats x, y, z;     ///< [vertices]
-  Floats nx, ny, nz;  ///< [vertices], or empty when no vertex has a normal
+  Floats x, y, z;           ///< [vertices]
+  Floats nx, ny, nz;        ///< [vertices], or empty when no vertex has a normal
+  Floats red, green, blue;  ///< [vertices], or empty when no vertex has a colour
   Indices a, b, c, material;
   TriangleSpans() = default;
   /// Refers to the arrays of the argument.
@@ -67,6 +68,9 @@ struct TriangleSpans {
         nx(t.nx),
         ny(t.ny),
         nz(t.nz),
+        red(t.red),
+        green(t.green),
+        blue(t.blue),
         a(t.a),
         b(t.b),
         c(t.c),

@@ -154,6 +154,7 @@ void World::Impl::view_grids(const Box& all) {
 void World::Impl::set_materials() {
   shading.materials = materials.view();
   shading.smooth = !scene.geometry.triangles.nx.empty();
+  shading.colored = !scene.geometry.triangles.red.empty();
   shading.gains = materials.gains;
   shading.reflects = materials.reflects;
   shading.refracts = materials.refracts;

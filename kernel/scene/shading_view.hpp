@@ -43,6 +43,7 @@ struct ShadingView {
   int light_count = 0;
   float background[3] = {};
   bool smooth = false;
+  bool colored = false;  ///< vertices have colours
   bool reflects = false;
   bool refracts = false;
   bool fresnel = false;

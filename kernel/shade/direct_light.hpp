@@ -63,7 +63,9 @@ template <bool kOne>
                                                       const VFloat3& normal,
                                                       const VFloat3& l,
                                                       const VFloat& nl) {
-  const VFloat3 diffuse = nl * gather3(s, kDiffuseR, at);
+  VFloat3 diffuse = nl * gather3(s, kDiffuseR, at);
+  if (s.shading.colored)
+    diffuse = diffuse * at(s.b.hits.color);
   if (!s.shading.highlights)
     return diffuse;
   const VFloat3 specular = gather3(s, kSpecularR, at);

@@ -6,14 +6,13 @@
 
 namespace grelha::GRELHA_ISA {
 
-/// Surfaces of rays i, i + 1, ..., which hit `id`.
-[[gnu::always_inline]] inline Surface<VFloat> surface_at_rays(const Shader& s,
-                                                              int i,
-                                                              const VUint& id,
-                                                              const VFloat3& dir) {
+/// Surfaces of rays i, i + 1, ..., which hit `id`, and their colours where vertices have some.
+[[gnu::always_inline]] inline Surface<VFloat> surface_at_rays(
+    const Shader& s, int i, const VUint& id, const VFloat3& dir, VFloat3& color) {
   const VFloat3 org = load3(s.b.rays.org, i);
   const VFloat t = load<VFloat>(s.b.rays.t + i);
-  return surface_of<VFloat>(s.scene.geometry, id, org, dir, t, s.shading.smooth, true);
+  VFloat3* const wanted = s.shading.colored ? &color : nullptr;
+  return surface_of<VFloat>(s.scene.geometry, id, org, dir, t, s.shading.smooth, true, wanted);
 }
 
 /// Stores where the selected of some rays hit surfaces, from hit `to` on.
@@ -67,7 +66,10 @@ inline int find_surfaces(const Shader& s, int count) {
     if (hit.count() == 0)
       continue;
     const VFloat3 dir = load3(r.dir, i);
-    store_surfaces(s, hit, hits, dir, surface_at_rays(s, i, id, dir));
+    VFloat3 color;
+    store_surfaces(s, hit, hits, dir, surface_at_rays(s, i, id, dir, color));
+    if (s.shading.colored)
+      hit.store(s.b.hits.color, hits, color);
     store_carried(s, hit, hits, i, weight);
     hits += hit.count();
   }

@@ -13,7 +13,8 @@ namespace grelha::GRELHA_ISA {
 
 /// Surfaces of primitives `id` at the rays' hits; undefined in lanes without a hit. Only kinds that
 /// some lane hit are computed; mostly it is one. If the hit is the `first` crossing beyond t = 0,
-/// only cones need t.
+/// only cones need t. `color`, unless null, gets the mixed colours of triangles' vertices; 1 in
+/// other lanes.
 template <class Real>
 inline Surface<Real> surface_of(const GeometryView& g,
                                 const Words<Real>& id,
@@ -21,7 +22,8 @@ inline Surface<Real> surface_of(const GeometryView& g,
                                 const Vec3<Real>& dir,
                                 const Real& t,
                                 bool smooth,
-                                bool first = false) {
+                                bool first = false,
+                                Vec3<Real>* color = nullptr) {
   const Vec3<Real> at{org.x + t * dir.x, org.y + t * dir.y, org.z + t * dir.z};
   const SurfaceHit<Real> met{
       .org = org,
@@ -30,8 +32,12 @@ inline Surface<Real> surface_of(const GeometryView& g,
       .first = first,
       .at = at,
       .smooth = smooth,
+      .color = color,
   };
   Surface<Real> s{};
+  const Real white(1);
+  if (color)
+    *color = {white, white, white};
   // Inlined, or the linker could take another file's, compiled with other flags.
   for_each_shape([&]<class Shape>() __attribute__((always_inline)) {
     const std::uint32_t begin = g.ids.begin(Shape::kKind);
@@ -42,6 +48,8 @@ inline Surface<Real> surface_of(const GeometryView& g,
       return;
     const typename Shape::Arrays& arrays = g.of<Shape>();
     const Surface<Real> f = surface_on(arrays, Words<Real>(here ? id - begin : Words<Real>{}), met);
+    if (Shape::kKind == PrimitiveKind::kTriangle && color)
+      *color = select(selected, *color, Vec3<Real>{white, white, white});
     s = {select(selected, f.point, s.point),
          select(selected, f.normal, s.normal),
          select(selected, f.shading, s.shading),

@@ -55,9 +55,10 @@ template <class Real>
 struct SurfaceHit {
   const Vec3<Real>&org, &dir;
   const Real& t;
-  bool first;     ///< the hit is the first crossing beyond t = 0; t may be unknown
-  Vec3<Real> at;  ///< org + t dir
-  bool smooth;    ///< normals of vertices are mixed
+  bool first;                   ///< the hit is the first crossing beyond t = 0; t may be unknown
+  Vec3<Real> at;                ///< org + t dir
+  bool smooth;                  ///< normals of vertices are mixed
+  Vec3<Real>* color = nullptr;  ///< where triangles put the mix of their vertices' colours, or null
 };
 
 /// The surface at a position.

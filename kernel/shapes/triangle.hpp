@@ -39,6 +39,7 @@ struct Triangle {
   struct Arrays {
     const float* vertex[3] = {};          ///< x, y, z of each
     const float* normal[3] = {};          ///< the same, or null
+    const float* color[3] = {};           ///< red, green, blue of each, or null
     const std::uint32_t* corner[3] = {};  ///< which vertices a triangle has
     const std::uint32_t* material = nullptr;
     std::uint32_t count = 0;
@@ -83,7 +84,7 @@ struct Triangle {
   static bool is_even(const TriangleSpans& spans);
   static std::size_t bytes(const TriangleSpans& spans) {
     return spans.size() * 4 * sizeof(std::uint32_t) +
-           (spans.vertex_count() + spans.nx.size()) * 3 * sizeof(float);
+           (spans.vertex_count() + spans.nx.size() + spans.red.size()) * 3 * sizeof(float);
   }
 
   /// The caller's triangles.

@@ -117,6 +117,16 @@ inline Vec3<Real> mixed_normal(const Triangle::Arrays& triangles,
   return select(mask_and(sound, mm > Real(kLeastMix)), same_side, flat);
 }
 
+/// The colours of three vertices, mixed by weights.
+template <class Real>
+inline Vec3<Real> mixed_color(const Triangle::Arrays& triangles,
+                              const Words<Real> (&vertex)[3],
+                              const Vec3<Real>& weights) {
+  return weights.x * three_at(triangles.color, vertex[0]) +
+         (weights.y * three_at(triangles.color, vertex[1]) +
+          weights.z * three_at(triangles.color, vertex[2]));
+}
+
 /// Surfaces of triangles i at the rays' hits.
 template <class Real>
 inline Surface<Real> surface_on(const Triangle::Arrays& triangles,
@@ -143,6 +153,8 @@ inline Surface<Real> surface_on(const Triangle::Arrays& triangles,
   };
   if (met.smooth)
     s.shading = mixed_normal<Real>(triangles, v, weights, n);
+  if (met.color)
+    *met.color = mixed_color<Real>(triangles, v, weights);
   return s;
 }
 

@@ -13,13 +13,16 @@ class Scene:
 
     Scene(vertices, faces) shows a mesh in light grey with three lights, as the program shows a bare
     PLY file. The arguments are those of World.
+
+    colors   (vertices, 3): uint8 is sRGB, other numbers are light from 0 to 1. A picture of them is
+             light as well: write_image(path, image, srgb=True).
     """
 
     __slots__ = ("_core", "__weakref__")
 
-    def __init__(self, vertices, faces, *, threads=0):
+    def __init__(self, vertices, faces, *, colors=None, threads=0):
         _expect_unmade(self)
-        self._core = _grelha.scene_of_mesh(vertices, faces, threads)
+        self._core = _grelha.scene_of_mesh(vertices, faces, colors, threads)
 
     @classmethod
     def _of(cls, core):
@@ -54,6 +57,11 @@ class Scene:
     def faces(self):
         """As of World."""
         return self._core.core().faces()
+
+    @property
+    def colors(self):
+        """Light of the vertices, float32 (vertices, 3), or None."""
+        return self._core.colors()
 
     @property
     def camera(self):
@@ -94,20 +102,23 @@ class Scene:
         return self._core.render(view, samples, error, seed, depth, threads)
 
 
-def read(path, *, threads=0):
+def read(path, *, colors=True, threads=0):
     """Reads an NFF, P3F or PLY file, each also gzipped: a Scene.
+
+    colors   False leaves out those of meshes
 
     Its warnings are UserWarnings. Raises OSError for what cannot be read, ValueError with file,
     line and column for what is no scene.
     """
-    return Scene._of(_grelha.scene_of_file(path, threads))
+    return Scene._of(_grelha.scene_of_file(path, bool(colors), threads))
 
 
-def write_image(path, image):
+def write_image(path, image, *, srgb=False):
     """Writes an array of shape (h, w) or (h, w, 3), 0 black and 1 white.
 
     path   ends with .png, .hdr, .pfm or .exr
+    srgb   a .png shows the numbers as light, through the sRGB curve; False: as bytes from 0 to 255
 
     Raises OSError where that fails, TypeError or ValueError for what is no picture.
     """
-    _grelha.write_image(path, image)
+    _grelha.write_image(path, image, bool(srgb))

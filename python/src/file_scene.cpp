@@ -12,6 +12,7 @@
 #include "frontend/input/default_view.hpp"
 #include "frontend/input/effects.hpp"
 #include "frontend/input/read_scene.hpp"
+#include "frontend/ply/ply_faces.hpp"
 #include "frontend/scene/scene_builder.hpp"
 #include "grelha/render.hpp"
 #include "src/hear.hpp"
@@ -35,6 +36,25 @@ py::tuple tuple_of(const std::array<double, 3>& v) {
 }
 
 using Point = std::array<double, 3>;
+
+/// Bytes are sRGB, other numbers light.
+void put_colors(py::handle given, Triangles& triangles) {
+  const bool bytes = py::isinstance<py::array_t<std::uint8_t>>(given);
+  const Triples v(given, "colors");
+  if (v.full_shape() != Shape{py::ssize_t(triangles.vertex_count()), 3})
+    wrong_value("colors",
+                "shape (" + std::to_string(triangles.vertex_count()) + ", 3), one a vertex",
+                text_of(v.full_shape()));
+  std::vector<float>* const channels[] = {&triangles.red, &triangles.green, &triangles.blue};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (std::size_t i = 0; i < v.count(); ++i) {
+      const double number = v.points().at(i, axis);
+      const float light = bytes ? light_of_byte(number) : float(number);
+      if (!(light >= 0 && light <= 1))
+        wrong_value("colors", "uint8, or numbers from 0 to 1", std::to_string(number));
+      channels[axis]->push_back(light);
+    }
+}
 
 /// None is absent.
 ViewOptions::Point point_in(py::handle given, const char* name) {
@@ -102,7 +122,7 @@ FileScene FileScene::of(SceneFile file, bool in_double, int threads) {
   return scene;
 }
 
-FileScene FileScene::read(py::handle path, int threads) {
+FileScene FileScene::read(py::handle path, bool colors, int threads) {
   const std::string name = path_in(path);
   py::module_::import("os").attr("stat")(path);  // its errors are the ones that Python knows
   SceneFile file;
@@ -110,6 +130,7 @@ FileScene FileScene::read(py::handle path, int threads) {
   hear_signals([&](const Progress& progress) {
     ReadOptions options;
     options.progress = progress;
+    options.colors = colors;
     const Warn keep = [&](const std::string& line) { warnings.push_back(line); };
     file = read_scene(name, keep, options);
   });
@@ -118,12 +139,18 @@ FileScene FileScene::read(py::handle path, int threads) {
   return of(std::move(file), framed, threads);
 }
 
-FileScene FileScene::of_mesh(py::handle vertices, py::handle faces, int threads) {
+FileScene FileScene::of_mesh(py::handle vertices,
+                             py::handle faces,
+                             py::handle colors,
+                             int threads) {
   ModelParts mesh = mesh_parts(vertices, faces);
   SceneFile file;
   file.frame.offset = mesh.scene.offset;
   file.scene = std::move(mesh.scene);
-  file.scene.materials = {default_mesh_material()};
+  file.colors.of_vertices = !colors.is_none();
+  if (file.colors.of_vertices)
+    put_colors(colors, file.scene.geometry.triangles);
+  file.scene.materials = {default_mesh_material(file.colors.of_vertices)};
   add_default_view(file);
   return of(std::move(file), mesh.in_double, threads);
 }
@@ -138,6 +165,18 @@ py::dict FileScene::camera() const {
   camera["width"] = from.width;
   camera["height"] = from.height;
   return camera;
+}
+
+py::object FileScene::colors() const {
+  const Triangles& t = model_->geometry().triangles;
+  if (t.red.empty())
+    return py::none();
+  py::array_t<float> all(Shape{py::ssize_t(t.vertex_count()), 3});
+  float* to = all.mutable_data();
+  for (std::size_t i = 0; i < t.vertex_count(); ++i)
+    for (const float channel : {t.red[i], t.green[i], t.blue[i]})
+      *to++ = channel;
+  return all;
 }
 
 py::array_t<double> FileScene::lights() const {
@@ -213,10 +252,10 @@ py::array_t<float> FileScene::render(const RenderArguments& given) const {
 
 namespace {
 
-std::string encoded(ImageFormat format, const Image& image) {
+std::string encoded(ImageFormat format, const Image& image, Tone tone) {
   switch (format) {
     case ImageFormat::png:
-      return encode_png(image, {});
+      return encode_png(image, tone);
     case ImageFormat::hdr:
       return encode_hdr(image);
     case ImageFormat::pfm:
@@ -228,21 +267,22 @@ std::string encoded(ImageFormat format, const Image& image) {
 }
 
 /// Encodes a picture, which may take seconds, beside a thread that hears signals; then writes it.
-void write_encoded(const std::string& name, ImageFormat format, Image image) {
+void write_encoded(const std::string& name, ImageFormat format, Image image, Tone tone) {
   check_writable(name);
   struct Picture {
     Image image;
     std::string bytes;
   };
   const auto picture = std::make_shared<Picture>(Picture{std::move(image), {}});
-  hear_signals_beside([picture, format] { picture->bytes = encoded(format, picture->image); });
+  hear_signals_beside(
+      [picture, format, tone] { picture->bytes = encoded(format, picture->image, tone); });
   const py::gil_scoped_release unlocked;
   write_file(name, picture->bytes);
 }
 
 }  // namespace
 
-void write_picture(py::handle path, py::handle given) {
+void write_picture(py::handle path, py::handle given, bool srgb) {
   const std::string name = path_in(path);
   if (!image_format(name))
     wrong_value("path", "a name that ends with .png, .hdr, .pfm or .exr", '"' + name + '"');
@@ -254,15 +294,18 @@ void write_picture(py::handle path, py::handle given) {
   for (const std::size_t side : {0, 1})
     if (shape[side] < 1 || shape[side] > kMostSide)
       wrong_value("image", "sides of 1 to " + std::to_string(kMostSide), text_of(shape));
+  const ImageFormat format = *image_format(name);
+  if (srgb && format != ImageFormat::png)
+    wrong_value("srgb", "a .png, other pictures hold light as it is", '"' + name + '"');
   const int width = int(shape[1]);
   const int height = int(shape[0]);
-  if (!image_fits(*image_format(name), width, height))
+  if (!image_fits(format, width, height))
     wrong_value("image", "a picture that this format holds", text_of(shape));
   const auto floats = py::array_t<float, py::array::c_style | py::array::forcecast>(array);
   Image image(width, height);
   for (std::size_t i = 0; i < image.rgb.size(); ++i)
     image.rgb[i] = floats.data()[grey ? i / 3 : i];
-  write_encoded(name, *image_format(name), std::move(image));
+  write_encoded(name, format, std::move(image), srgb ? Tone::srgb : Tone::authored);
 }
 
 }  // namespace grelha::python

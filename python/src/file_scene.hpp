@@ -23,9 +23,9 @@ struct RenderArguments {
 class FileScene {
  public:
   /// Reads a file. Its warnings are Python's.
-  static FileScene read(py::handle path, int threads);
+  static FileScene read(py::handle path, bool colors, int threads);
   /// A mesh as the program shows a bare PLY: its own view, three lights, light grey.
-  static FileScene of_mesh(py::handle vertices, py::handle faces, int threads);
+  static FileScene of_mesh(py::handle vertices, py::handle faces, py::handle colors, int threads);
 
   py::tuple state() const;
   /// Throws ValueError for what state() did not make.
@@ -34,6 +34,7 @@ class FileScene {
   const SharedModel& model() const { return model_; }
   py::dict camera() const;
   py::array_t<double> lights() const;
+  py::object colors() const;  ///< of the vertices (vertices, 3), or None
   py::array_t<float> render(const RenderArguments& given) const;
 
  private:
@@ -46,7 +47,7 @@ class FileScene {
   int samples_ = 1;
 };
 
-/// Writes an array of shape (h, w) or (h, w, 3) as a picture.
-void write_picture(py::handle path, py::handle image);
+/// Writes an array of shape (h, w) or (h, w, 3) as a picture; `srgb`: a PNG through that curve.
+void write_picture(py::handle path, py::handle image, bool srgb);
 
 }  // namespace grelha::python

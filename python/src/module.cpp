@@ -27,11 +27,12 @@ ViewArguments view_in(const py::tuple& v) {
 }
 
 void define_scene(py::module_& module) {
-  module.def("scene_of_mesh", [](py::handle vertices, py::handle faces, py::handle threads) {
-    return FileScene::of_mesh(vertices, faces, threads_in(threads));
-  });
-  module.def("scene_of_file", [](py::handle path, py::handle threads) {
-    return FileScene::read(path, threads_in(threads));
+  module.def("scene_of_mesh",
+             [](py::handle vertices, py::handle faces, py::handle colors, py::handle threads) {
+               return FileScene::of_mesh(vertices, faces, colors, threads_in(threads));
+             });
+  module.def("scene_of_file", [](py::handle path, bool colors, py::handle threads) {
+    return FileScene::read(path, colors, threads_in(threads));
   });
   module.def("scene_of", &FileScene::of_state);
   py::class_<FileScene> scene(module, "SceneCore");
@@ -39,6 +40,7 @@ void define_scene(py::module_& module) {
   scene.def("core", [](const FileScene& self) { return Core{self.model()}; });
   scene.def("camera", &FileScene::camera);
   scene.def("lights", &FileScene::lights);
+  scene.def("colors", &FileScene::colors);
   scene.def("render",
             [](const FileScene& self,
                const py::tuple& view,

@@ -15,14 +15,16 @@ constexpr int kVersion = 1;
 template <class Geometry, class Visit>
 void each_array(Geometry& g, const Visit& visit) {
   std::istringstream names(
-      "sphere_x sphere_y sphere_z sphere_radius sphere_material x y z nx ny nz a b c material "
+      "sphere_x sphere_y sphere_z sphere_radius sphere_material x y z nx ny nz red green blue a b "
+      "c material "
       "base_x base_y base_z apex_x apex_y apex_z base_radius apex_radius cone_material "
       "plane_x plane_y plane_z plane_nx plane_ny plane_nz plane_material");
   std::string name;
   const auto all = [&](auto&... arrays) { ((names >> name, visit(name.c_str(), arrays)), ...); };
   auto& [s, t, c, p, objects] = g;
   all(s.x, s.y, s.z, s.radius, s.material);
-  all(t.x, t.y, t.z, t.nx, t.ny, t.nz, t.a, t.b, t.c, t.material);
+  all(t.x, t.y, t.z, t.nx, t.ny, t.nz, t.red, t.green, t.blue);
+  all(t.a, t.b, t.c, t.material);
   all(c.base_x, c.base_y, c.base_z, c.apex_x, c.apex_y, c.apex_z);
   all(c.base_radius, c.apex_radius, c.material);
   all(p.x, p.y, p.z, p.nx, p.ny, p.nz, p.material);

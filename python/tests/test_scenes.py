@@ -128,6 +128,56 @@ class Pictures(unittest.TestCase):
         again = __import__("pickle").loads(__import__("pickle").dumps(scene))
         np.testing.assert_array_equal(again.render(64, 64, eye=behind, background=(9, 9, 9)), seen)
 
+    def test_colors(self):
+        vertices, faces = ball(16)
+        rng = np.random.default_rng(1)
+        light = rng.random((len(vertices), 3)).astype(np.float32)
+        scene = grelha.Scene(vertices, faces, colors=light)
+        np.testing.assert_array_equal(scene.colors, light)
+        self.assertIsNone(grelha.Scene(vertices, faces).colors)
+        image = scene.render(64, 64, samples=1)
+        again = __import__("pickle").loads(__import__("pickle").dumps(scene))
+        np.testing.assert_array_equal(again.render(64, 64, samples=1), image)
+        white = grelha.Scene(vertices, faces, colors=np.ones_like(light)).render(64, 64, samples=1)
+        self.assertTrue((image <= white + 1e-6).all() and (image < white - 0.1).any())
+        encoded = rng.integers(0, 256, (len(vertices), 3), np.uint8)
+        share = encoded / 255
+        np.testing.assert_allclose(
+            grelha.Scene(vertices, faces, colors=encoded).colors,
+            np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4), rtol=1e-6)
+        for wrong in (light[1:], light[:, :2], light + 1, -light, np.full_like(light, np.nan)):
+            with self.assertRaisesRegex(ValueError, "colors"):
+                grelha.Scene(vertices, faces, colors=wrong)
+        with self.assertRaisesRegex(TypeError, "colors"):
+            grelha.Scene(vertices, faces, colors="red")
+
+    def test_colors_of_files_are_those_of_the_program(self):
+        program = pathlib.Path(grelha.__file__).parents[2] / "grelha"
+        if not program.exists():
+            self.skipTest(f"there is no {program}")
+        vertices, faces = ball(8)
+        encoded = np.random.default_rng(2).integers(0, 256, (len(vertices), 3))
+        text = ply(vertices, faces).replace("property double z\n", "property double z\n" + "".join(
+            f"property uchar {name}\n" for name in ("red", "green", "blue")))
+        lines = text.split("end_header\n")
+        rows = lines[1].split("\n")
+        for i, color in enumerate(encoded):
+            rows[i] += " {} {} {}".format(*color)
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "colored.ply")
+            path.write_text(lines[0] + "end_header\n" + "\n".join(rows))
+            for words, colors in (([], True), (["--no-colors"], False)):
+                of_program, of_python = path.with_suffix(".a.png"), path.with_suffix(".b.png")
+                subprocess.run([program, "render", path, "--size", "40x40", "-q", "-o", of_program,
+                                *words], check=True)
+                scene = grelha.read(path, colors=colors)
+                self.assertEqual(scene.colors is not None, colors)
+                grelha.write_image(of_python, scene.render(40, 40), srgb=colors)
+                self.assertEqual(*[p.read_bytes().split(b"IDAT", 1)[1]
+                                   for p in (of_program, of_python)])
+            with self.assertRaisesRegex(ValueError, "srgb"):
+                grelha.write_image(path.with_suffix(".exr"), scene.render(4, 4), srgb=True)
+
     def test_lights_and_background(self):
         scene = grelha.read(DATA / "balls.nff")
         picture = scene.render(40, 40, samples=4)

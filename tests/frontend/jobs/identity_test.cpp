@@ -38,6 +38,10 @@ TEST(Identity, KnowsAnotherScene) {
   EXPECT_TRUE(changed([](SceneFile& f) { f.scene.materials[0].fresnel ^= true; }));
   EXPECT_TRUE(changed([](SceneFile& f) { f.scene.lights[0].edge2.x = 1; }));
   EXPECT_TRUE(changed([](SceneFile& f) { f.scene.background.y += .1f; }));
+  EXPECT_TRUE(changed([](SceneFile& f) {
+    Triangles& t = f.scene.geometry.triangles;
+    t.red = t.green = t.blue = {.5f};
+  }));
   EXPECT_TRUE(changed([](SceneFile& f) { f.camera.eye.z += .1f; }));
   EXPECT_TRUE(changed([](SceneFile& f) { f.camera.angle_deg += .1; }));
   EXPECT_TRUE(changed([](SceneFile& f) { f.camera.orthographic_height = 1; }));

@@ -57,6 +57,9 @@ Picture mixture() {
     t.nx.push_back(n.x);
     t.ny.push_back(n.y);
     t.nz.push_back(n.z);
+    t.red.push_back(static_cast<float>(random.in(0, 1)));
+    t.green.push_back(static_cast<float>(random.in(0, 1)));
+    t.blue.push_back(static_cast<float>(random.in(0, 1)));
   }
   s.lights = {
       {{3, 4, 5}, {.6f, .6f, .6f}}, {{-4, 2, 1}, {.3f, .1f, .2f}}, {{0, 0, 0}, {.2f, .4f, .1f}}};

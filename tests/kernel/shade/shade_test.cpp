@@ -34,6 +34,84 @@ TEST(Shade, LambertOnAFloor) {
   }
 }
 
+/// Vertices 0 to 8 of a square of 2 x 2, row by row, with random colours, tilted and moved.
+struct Patch {
+  explicit Patch(Random& random) {
+    Triangles& t = scene.geometry.triangles;
+    scene.materials = {plain({.5f, .75f, 1})};
+    scene.lights = {{{2, 6, 3}, {.5f, 1, 2}}};
+    for (int i = 0; i < 9; ++i) {
+      const int x = i % 3 - 1, z = i / 3 - 1;
+      t.x.push_back(static_cast<float>(x));
+      t.y.push_back(static_cast<float>(.25 * x));
+      t.z.push_back(static_cast<float>(z));
+      t.red.push_back(static_cast<float>(random.in(0, 1)));
+      t.green.push_back(static_cast<float>(random.in(0, 1)));
+      t.blue.push_back(static_cast<float>(random.in(0, 1)));
+    }
+    for (const std::uint32_t i : {0u, 1u, 3u, 4u})
+      for (const auto& [b, c] : {std::pair{i + 3, i + 4}, {i + 4, i + 1}}) {
+        t.a.push_back(i);
+        t.b.push_back(b);
+        t.c.push_back(c);
+        t.material.push_back(0);
+      }
+  }
+  V vertex(std::size_t i) const {
+    const Triangles& t = scene.geometry.triangles;
+    return V(Float3{t.x[i], t.y[i], t.z[i]});
+  }
+  V color(std::size_t i) const {
+    const Triangles& t = scene.geometry.triangles;
+    return V(Float3{t.red[i], t.green[i], t.blue[i]});
+  }
+  Scene scene;
+};
+
+/// At corners, middles of edges, middles of triangles and between: the vertices' colours, mixed by
+/// exact weights, times the diffuse. The spot is off by the direction's 12 eps over a distance of
+/// 6, where a colour changes by up to 1 on a way of 1.
+TEST(Shade, ColorsAreMixedByWeights) {
+  int seen = 0;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    Random random(seed);
+    const Patch patch(random);
+    const Triangles& t = patch.scene.geometry.triangles;
+    const Real u = random.in(0, .5), v = random.in(0, .5);
+    const V mixes[] = {{1, 0, 0}, {0, .5L, .5L}, {.5L, 0, .5L}, {.5L, .5L, 0}, {1 - u - v, u, v}};
+    const std::size_t triangle = seed % 8;
+    for (const V& mix : mixes) {
+      // vertex 4 is in the middle, where a ray that is off still hits
+      const std::size_t a = mix.x == 1 ? 4 : t.a[triangle], b = t.b[triangle], c = t.c[triangle];
+      const V spot = mix.x * patch.vertex(a) + mix.y * patch.vertex(b) + mix.z * patch.vertex(c);
+      const V color = mix.x * patch.color(a) + mix.y * patch.color(b) + mix.z * patch.color(c);
+      const Pixel p = look(patch.scene, {.5f, 5, 1}, {float(spot.x), float(spot.y), float(spot.z)});
+      if (p.stats.rays.shadow == 0)
+        continue;  // past the rim
+      ++seen;
+      const V normal = oracle::unit({-.25L, 1, 0});
+      const Real cosine = dot(oracle::unit(V(patch.scene.lights[0].position) - spot), normal);
+      const double bound = 2 * 12 * 6 * 6e-8 + kFew;
+      EXPECT_NEAR(p.r, double(.25L * cosine * color.x), bound) << seed << ' ' << double(mix.x);
+      EXPECT_NEAR(p.g, double(.75L * cosine * color.y), bound) << seed << ' ' << double(mix.x);
+      EXPECT_NEAR(p.b, double(2 * cosine * color.z), 2 * bound) << seed << ' ' << double(mix.x);
+    }
+  }
+  EXPECT_GT(seen, 800);
+}
+
+/// Colours are of triangles alone: a ball beside them, with a material of its own, has none.
+TEST(Shade, ColorsAreOfTheirTriangles) {
+  Random random(1);
+  Patch patch(random);
+  patch.scene.materials.push_back(plain({1, 1, 1}));
+  patch.scene.geometry.spheres.add({0, 2, 0}, 1, 1);
+  patch.scene.lights = {{{0, 9, 0}, {1, 1, 1}}};
+  const Pixel p = look(patch.scene, {0, 5, 0}, {0, 3, 0});
+  EXPECT_NEAR(p.r, 1, kFew);
+  EXPECT_NEAR(p.b, 1, kFew);
+}
+
 TEST(Shade, BlinnHighlight) {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     Random random(seed);
