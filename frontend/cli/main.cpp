@@ -121,7 +121,7 @@ std::string info_of(const std::string& scene, const InfoCommand& command) {
   const bool bars = stderr_is_terminal();
   WarningLog log;
   SceneFile file = load_scene(scene, log.reporting(), command.input.read, bars);
-  apply_view(command.input.view, file);
+  apply_view(view_of(file), command.input.view, file);
   warn_empty_scene(scene, file, log.reporting());
   log.check_none(command.input);
   const SceneMemory memory = memory_of(file, command.build);

@@ -112,6 +112,21 @@ void check_long_work(const RenderCommand& command) {
     throw UsageError("--checkpoint-every wants --checkpoint");
 }
 
+void check_turntable(const RenderCommand& command) {
+  const LongWork& w = command.work;
+  if (command.turntable == 0)
+    return;
+  if (command.scenes.size() != 1 || is_folder(command.scenes[0]))
+    throw UsageError("--turntable: expected one scene");
+  if (w.is_part() || is_partial_name(command.image) || !w.checkpoint.empty() || w.show_interval > 0)
+    throw UsageError(
+        "--turntable makes whole pictures: no --rows, I:J, --checkpoint, --preview or .grelha");
+  if (command.layers.any() || !command.stats.empty() || command.render.refine.seconds > 0 ||
+      !command.samples_map.empty() || !command.error_map.empty())
+    throw UsageError(
+        "--turntable: no --layers, --stats, --time SECONDS, --samples-map or --error-map");
+}
+
 /// Endings that promise another format than NFF.
 bool has_other_suffix(std::string_view path) {
   constexpr std::array<std::string_view, 3> kOther{".ply", ".gz", ".grelha"};
@@ -128,6 +143,7 @@ void check_conflicts(const RenderCommand& command) {
   check_sampler(command.effects);
   check_grid(command.build);
   check_long_work(command);
+  check_turntable(command);
   check_tone(command.srgb, command.image, command.format);
   if (command.layers.any() && format_of(command.image, command.format) != ImageFormat::exr)
     reject("--layers and -o", "a .exr, which alone holds layers", command.image);

@@ -14,6 +14,7 @@ namespace {
 using namespace option_values;
 
 constexpr int kMaxThreads = 1024;
+constexpr int kMostViews = 3600;
 
 using Word = std::pair<std::string_view, int>;
 using Name = std::pair<std::string_view, std::string_view>;
@@ -72,44 +73,35 @@ void add_input_options(CLI::App& app, InputOptions& input) {
 
 /// Adds the options for the camera and what follows it.
 void add_view(CLI::App& app, ViewOptions& view) {
-  constexpr char kGroup[] = "View";
-  const auto place = [&](const char* name, const char* help, ViewOptions::Point& of) {
-    value(app, name, "X,Y,Z", help, [name, &of](const std::string& text) {
-      of = point(name, text);
-    })->group(kGroup);
+  const auto add = [&app](const char* name,
+                          const char* placeholder,
+                          const char* help,
+                          std::function<void(const std::string&)> take) {
+    value(app, name, placeholder, help, std::move(take))->group("View");
   };
+  const auto place = [&](const char* name, const char* help, ViewOptions::Point& of) {
+    add(name, "X,Y,Z", help, [name, &of](const std::string& text) { of = point(name, text); });
+  };
+  using Text = const std::string&;
   place("--eye", "where the camera is [as the scene says; info prints it]", view.eye);
   place("--at", "the point it looks at", view.at);
   place("--up", "the direction that is up", view.up);
-  value(app, "--angle", "DEG", "vertical field of view", [&view](const std::string& text) {
-    view.angle_deg = angle(text);
-  })->group(kGroup);
-  value(app,
-        "--orbit",
-        "A,E,Z",
-        "degrees to the right, degrees up (180,0: behind), zoom [1]",
-        [&view](const std::string& text) { view.orbit = orbit(text); })
-      ->group(kGroup);
-  value(app,
-        "--orthographic",
-        "HEIGHT",
-        "parallel rays, and how much the picture shows, scene units",
-        [&view](const std::string& text) { view.orthographic_height = picture_height(text); })
-      ->group(kGroup);
-  value(app,
-        "--background",
-        "R,G,B",
-        "light of rays that hit nothing; 1 is white",
-        [&view](const std::string& text) { view.background = color("--background", text); })
-      ->group(kGroup);
-  value(app,
-        "--lights",
-        "camera|mesh",
-        "what the lights of a bare mesh stay with when the camera moves [camera]",
-        [&view](const std::string& text) {
-          view.lights_follow = choice("--lights", text, kLightHolders) == 1;
-        })
-      ->group(kGroup);
+  add("--angle", "DEG", "vertical field of view", [&](Text t) { view.angle_deg = angle(t); });
+  add("--orbit",
+      "A,E,Z",
+      "degrees to the right, degrees up (180,0: behind), zoom [1]",
+      [&](Text t) { view.orbit = orbit(t); });
+  add("--orthographic",
+      "HEIGHT",
+      "parallel rays, and how much the picture shows, scene units",
+      [&](Text t) { view.orthographic_height = picture_height(t); });
+  add("--background", "R,G,B", "light of rays that hit nothing; 1 is white", [&](Text t) {
+    view.background = color("--background", t);
+  });
+  add("--lights",
+      "camera|mesh",
+      "what the lights of a bare mesh stay with when the camera moves [camera]",
+      [&](Text t) { view.lights_follow = choice("--lights", t, kLightHolders) == 1; });
 }
 
 void add_build_options(CLI::App& app, BuildOptions& build) {
@@ -178,6 +170,17 @@ void add_picture_files(CLI::App& sub, RenderCommand& command) {
         "LIST",
         "depth,normal,id or some: .exr: what is seen through the centres of pixels",
         [&command](const std::string& text) { command.layers = layers(text); });
+}
+
+void add_turntable(CLI::App& sub, RenderCommand& command) {
+  value(sub,
+        "--turntable",
+        "N",
+        "views all around, {} in -o is their number; without {}: a sheet of all",
+        [&command](const std::string& text) {
+          command.turntable = whole("--turntable", text, 1, kMostViews);
+        })
+      ->group("View");
 }
 
 /// Adds the options for size, threads and the length of paths.
@@ -301,6 +304,7 @@ void add_render(CLI::App& app, RenderCommand& command) {
   add_sample_locations(sub, command.effects);
   add_effects(sub, command.effects);
   add_view(sub, command.input.view);
+  add_turntable(sub, command);
   add_build_options(sub, command.build);
   add_traversal(sub, command);
   value(sub,

@@ -1,5 +1,7 @@
 #include "frontend/cli/render_scene.hpp"
 
+#include "frontend/cli/view_files.hpp"
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -16,10 +18,12 @@
 #include "frontend/commands/report.hpp"
 #include "frontend/commands/warning_log.hpp"
 #include "frontend/files/atomic_file.hpp"
+#include "frontend/images/image_file.hpp"
 #include "frontend/jobs/identity.hpp"
 #include "frontend/jobs/long_render.hpp"
 #include "frontend/jobs/partial.hpp"
 #include "frontend/jobs/preparation.hpp"
+#include "frontend/jobs/stop_signals.hpp"
 #include "frontend/scene/scene_file.hpp"
 #include "grelha/isa.hpp"
 
@@ -111,6 +115,8 @@ class SceneRender {
     prepare();
     report_.seconds.load = load.seconds();
     const PictureMemory memory = check();
+    if (command_.turntable > 0)
+      return turn(build(memory));
     LongRender work(resolved_, camera_, scene_, ranks_, log_.reporting());
     const World world = build(memory);
     SampleMaps maps;
@@ -138,7 +144,19 @@ class SceneRender {
       prepare_outputs(command_);
     file_ = load_scene(command_.scene, log_.reporting(), command_.input.read, bars_);
     check_not_read(outputs_of(command_), file_.meshes);
-    apply_view(command_.input.view, file_);
+    own_ = view_of(file_);
+    look(0);
+  }
+
+  /// Takes one of the views that the command asks for.
+  void look(int number) {
+    ViewOptions view = command_.input.view;
+    if (command_.turntable > 0) {
+      Orbit orbit = view.orbit.value_or(Orbit{});
+      orbit.azimuth_deg += 360. * number / command_.turntable;
+      view.orbit = orbit;
+    }
+    apply_view(own_, view, file_);
   }
 
   /// Applies the effects of the command to the scene, before rendering.
@@ -160,6 +178,8 @@ class SceneRender {
     log_.check_none(command_.input);
     const PictureMemory memory = picture_memory(resolved_, camera_);
     check_memory(command_.scene, memory.sums + memory.other);
+    if (command_.turntable > 0)
+      check_sheet(command_, camera_);
     return memory;
   }
 
@@ -180,6 +200,48 @@ class SceneRender {
     report_.seconds.render = render.seconds();
     report_.seconds.render_cpu = double(std::clock() - cpu) / CLOCKS_PER_SEC;
     return signal;
+  }
+
+  /// Renders all views of the World, each as a command of its own would.
+  int turn(const World& world) {
+    if (!ranks_.first())
+      return kOk;
+    const Stopwatch render;
+    ViewFiles files(command_, file_.scene.background);
+    bool met = true;
+    RayCounts rays;
+    for (int k = 0; k < command_.turntable; ++k) {
+      look(k);
+      prepare();
+      camera_ = camera_of(file_, command_);
+      files.add(k, render_view(world, k), style_of(resolved_, camera_, scene_));
+      rays += report_.render.rays;
+      const std::string unmet = unmet_error(command_, report_);
+      if (!unmet.empty())
+        warn(unmet);
+      met &= unmet.empty();
+    }
+    files.finish();
+    report_.render.rays = rays;
+    report_.seconds.render = render.seconds();
+    report(world);
+    return met || !command_.input.strict ? kOk : kNotMet;
+  }
+
+  Image render_view(const World& world, int number) {
+    ProgressBar bar(bars_);
+    RenderOptions options = resolved_.render;
+    options.lighting = Lighting{file_.scene.lights, file_.scene.background};
+    options.progress = [&](double share) {
+      bar.update(share);
+      return StopSignals::seen() == 0;
+    };
+    Image image = grelha::render(world, camera_, options, report_.render);
+    if (const int signal = StopSignals::seen())
+      throw Interrupted(
+          signal,
+          "rendering view " + std::to_string(number) + " of " + std::to_string(command_.turntable));
+    return image;
   }
 
   void write(LongRender& work, const World& world, const SampleMaps& maps) {
@@ -222,6 +284,7 @@ class SceneRender {
   const bool bars_;
   WarningLog log_;
   SceneFile file_;
+  View own_;                ///< of the file
   std::string scene_;       ///< digest of it
   RenderCommand resolved_;  ///< with the effects of the scene
   Camera camera_;
@@ -232,12 +295,6 @@ class SceneRender {
 
 int render_scene(const RenderCommand& command, Ranks& ranks) {
   return SceneRender(command, ranks).run();
-}
-
-void check_image_size(std::optional<ImageFormat> format, int width, int height) {
-  if (format && !image_fits(*format, width, height))
-    throw UsageError("a picture of " + std::to_string(width) + 'x' + std::to_string(height) +
-                     " is too large for .png and .hdr, write a .pfm or .exr");
 }
 
 }  // namespace grelha

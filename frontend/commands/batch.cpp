@@ -55,15 +55,9 @@ Names files_of(const std::string& folder) {
   return files;
 }
 
-constexpr std::string_view kPlaceholder = "{}";
-
-/// `pattern` with the scene's name in place of {}.
-std::string filled_in(std::string pattern, const std::string& scene) {
-  const std::string name = fs::path(default_image(scene)).stem().string();
-  for (std::size_t at = 0; (at = pattern.find(kPlaceholder, at)) != std::string::npos;
-       at += name.size())
-    pattern.replace(at, kPlaceholder.size(), name);
-  return pattern;
+/// What {} stands for.
+std::string name_of(const std::string& scene) {
+  return fs::path(default_image(scene)).stem().string();
 }
 
 std::string image_for(const std::string& scene,
@@ -73,7 +67,7 @@ std::string image_for(const std::string& scene,
     return default_image(scene, format);
   if (is_folder(output))
     return (fs::path(output) / default_image(scene, format)).string();
-  return filled_in(output, scene);
+  return output;
 }
 
 }  // namespace
@@ -113,6 +107,8 @@ std::vector<RenderCommand> commands_for(const RenderCommand& command) {
     one.scenes = {scene};
     one.scene = scene;
     one.image = image_for(scene, command.image, command.format);
+    if (command.turntable == 0)  // else {} stands for the view
+      one.image = filled_in(one.image, name_of(scene));
     one.work.save_until_end = scenes.size() > 1;
     const auto want_folder = [&one](const std::string& pattern, const std::string& file) {
       const fs::path folder = fs::path(file).parent_path();
@@ -122,7 +118,9 @@ std::vector<RenderCommand> commands_for(const RenderCommand& command) {
     };
     want_folder(command.image, one.image);
     each_output(one, [&](const char*, std::string& file) {
-      const std::string pattern = std::exchange(file, filled_in(file, scene));
+      const std::string pattern = file;
+      if (command.turntable == 0)
+        file = filled_in(file, name_of(scene));
       want_folder(pattern, file);
     });
     check_not_read(outputs_of(one), scenes);

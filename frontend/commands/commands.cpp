@@ -29,6 +29,13 @@ std::optional<ImageFormat> format_of(const std::string& image, std::optional<Ima
   return image == kStdout ? ImageFormat::png : image_format(image);
 }
 
+std::string filled_in(std::string pattern, const std::string& by) {
+  for (std::size_t at = 0; (at = pattern.find(kPlaceholder, at)) != std::string::npos;
+       at += by.size())
+    pattern.replace(at, kPlaceholder.size(), by);
+  return pattern;
+}
+
 bool writes_to_stdout(const RenderCommand& command) {
   return command.image == kStdout || command.stats == kStdout;
 }

@@ -79,6 +79,7 @@ struct RenderCommand {
   std::string stats;                   ///< file for the counts, or empty
   std::string samples_map, error_map;  ///< pictures of sample counts and of errors, or empty
   bool quiet = false, srgb = false;
+  int turntable = 0;     ///< views all around, a picture each or a sheet of all; 0: one view
   bool colored = false;  ///< the scene has colours that are light: a PNG takes the sRGB curve
 };
 
@@ -127,6 +128,11 @@ std::string default_image(const std::string& scene, std::optional<ImageFormat> f
 
 /// The format of the picture called `image`; a .grelha has none.
 std::optional<ImageFormat> format_of(const std::string& image, std::optional<ImageFormat> asked);
+
+inline constexpr std::string_view kPlaceholder = "{}";  ///< in names of files
+
+/// The name of a file, `by` in place of every {}.
+std::string filled_in(std::string pattern, const std::string& by);
 
 /// Returns true if results go to stdout; messages must then go to stderr.
 bool writes_to_stdout(const RenderCommand& command);

@@ -8,6 +8,7 @@
 #include "frontend/files/atomic_file.hpp"
 #include "frontend/files/parse_error.hpp"
 #include "frontend/files/place.hpp"
+#include "frontend/images/image_file.hpp"
 
 namespace grelha {
 namespace {
@@ -80,6 +81,12 @@ void check_distinct(const std::vector<RenderCommand>& commands) {
       if (!fresh)
         reject(other->second, use);
     }
+}
+
+void check_image_size(std::optional<ImageFormat> format, int width, int height) {
+  if (format && !image_fits(*format, width, height))
+    throw UsageError("a picture of " + std::to_string(width) + 'x' + std::to_string(height) +
+                     " is too large for .png and .hdr, write a .pfm or .exr");
 }
 
 }  // namespace grelha

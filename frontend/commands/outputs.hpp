@@ -38,4 +38,7 @@ void check_not_read(const std::vector<Output>& outputs, const std::vector<std::s
 /// Throws UsageError when two outputs are one file, be it of one command or of two.
 void check_distinct(const std::vector<RenderCommand>& commands);
 
+/// Throws UsageError when a picture of this size is too large for its format.
+void check_image_size(std::optional<ImageFormat> format, int width, int height);
+
 }  // namespace grelha

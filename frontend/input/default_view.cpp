@@ -42,16 +42,30 @@ double max_distance(const std::vector<Point3>& points) {
   return most;
 }
 
+struct Extents {
+  explicit Extents(const std::vector<Point3>& points) : low(points[0]), high(points[0]) {
+    for (const Point3& p : points)
+      for (std::size_t i = 0; i < 3; ++i) {
+        low[i] = std::min(low[i], p[i]);
+        high[i] = std::max(high[i], p[i]);
+      }
+  }
+  Point3 low, high;
+};
+
+Ball ball_around(const std::vector<Point3>& points) {
+  const Extents box(points);
+  Ball ball{in_floats(moved(box.low, .5, moved(box.high, -1, box.low))), 0};
+  for (const Point3& p : points)
+    ball.radius = std::max(ball.radius, length(moved(p, -1, in_double(ball.center))));
+  return ball;
+}
+
 /// The share of the box's cross-section that the lowest points along an axis span: a mesh stands on
 /// a wide base.
 double support(const std::vector<Point3>& points, std::size_t axis) {
   constexpr double kLowest = .02;  // of the height
-  Point3 low = points[0], high = points[0];
-  for (const Point3& p : points)
-    for (std::size_t i = 0; i < 3; ++i) {
-      low[i] = std::min(low[i], p[i]);
-      high[i] = std::max(high[i], p[i]);
-    }
+  const auto [low, high] = Extents(points);
   Point3 from = high, to = low;
   for (const Point3& p : points)
     if (p[axis] <= low[axis] + kLowest * (high[axis] - low[axis]))
@@ -148,8 +162,7 @@ void add_default_view(SceneFile& file) {
   file.camera.at = in_floats(at);
   file.camera.up = in_floats(axes.high);
   file.camera.angle_deg = kAngleDeg;
-  for (const Point3& p : points)
-    file.reach = std::max(file.reach, length(moved(p, -1, at)));
+  file.ball = ball_around(points);
   file.scene.lights = lights_around(file.camera);
   file.scene.background = {0.62f, 0.68f, 0.76f};
   if (file.colors.any())  // they are light: this looks the same through the sRGB curve

@@ -124,14 +124,14 @@ std::vector<std::string> lines_of(const View& view, const Frame& frame) {
 }
 
 View view_of(const SceneFile& file) {
-  return {file.camera, {file.scene.lights, file.scene.background}, file.default_light, file.reach};
+  return {file.camera, {file.scene.lights, file.scene.background}, file.default_light, file.ball};
 }
 
-void apply_view(const ViewOptions& options, SceneFile& file) {
+void apply_view(const View& own, const ViewOptions& options, SceneFile& file) {
   if (options.lights_follow && !file.default_light)
     throw std::invalid_argument(
         "--lights: expected a mesh without lights, found a scene with its own");
-  View view = changed(view_of(file), options, file.frame);
+  View view = changed(own, options, file.frame);
   file.camera = view.camera;
   file.scene.lights = std::move(view.lighting.lights);
   file.scene.background = view.lighting.background;
@@ -150,11 +150,15 @@ View changed(View view, const ViewOptions& options, const Frame& frame) {
     camera.orthographic_height = *options.orthographic_height * frame.scale;
   expect_valid(camera);
   if (options.orbit) {
-    const bool fits = view.reach > 0 && !options.eye && !options.at;
-    Camera wide = camera;  // an orthographic camera stands where another would
-    wide.orthographic_height = 0;
-    go_around(
-        *options.orbit, fits ? distance_of(view.reach, wide) : CameraAxes(camera).distance, camera);
+    double distance = CameraAxes(camera).distance;
+    if (view.ball.radius > 0 && !options.eye && !options.at) {
+      Camera wide = camera;  // an orthographic camera stands where another would
+      wide.orthographic_height = 0;
+      distance = distance_of(view.ball.radius, wide);
+      camera.eye = camera.eye + (view.ball.center - camera.at);
+      camera.at = view.ball.center;
+    }
+    go_around(*options.orbit, distance, camera);
     expect_valid(camera);
   }
   if (view.made_up_lights && options.lights_follow.value_or(true))

@@ -39,19 +39,20 @@ struct View {
   Camera camera;
   Lighting lighting;
   bool made_up_lights = false;
-  double reach = 0;  ///< SceneFile::reach of a made-up camera, else 0
+  Ball ball;  ///< around a bare mesh, whose camera is made up as well
 };
 
 /// The view of a file.
 View view_of(const SceneFile& file);
 
-/// The view that options make of another one. A bare mesh is seen from a distance that is the same
-/// all around, at which it fits into the picture. Throws std::invalid_argument for a camera that
+/// The view that options make of another one. A bare mesh turns about the middle of its ball, at
+/// the distance where that fits into the picture. Throws std::invalid_argument for a camera that
 /// cannot see.
 View changed(View view, const ViewOptions& options, const Frame& frame);
 
-/// Changes the view of a file. Throws as changed() does, and for --lights without made-up lights.
-void apply_view(const ViewOptions& options, SceneFile& file);
+/// Gives a file the view that options make of its own. Throws as changed() does, and for --lights
+/// without made-up lights.
+void apply_view(const View& own, const ViewOptions& options, SceneFile& file);
 
 /// The view as options and, unless it is orthographic, as lines of NFF, with the lights and the
 /// background where they are made up. Each number reads back as the same.

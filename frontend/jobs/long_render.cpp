@@ -73,6 +73,13 @@ std::string repeatable(const std::string& settings, std::uint64_t samples) {
          settings.substr(settings.find(' ', value));
 }
 
+ImageStyle style_of(const RenderCommand& command, const Identity& identity) {
+  return {format_of(command.image, command.format),
+          command.srgb || command.colored ? Tone::srgb : Tone::authored,
+          notes_of(identity),
+          {}};
+}
+
 }  // namespace
 
 void check_shareable(const RenderCommand& c, const Ranks& ranks) {
@@ -287,13 +294,15 @@ void LongRender::save() {
 
 /// Returns the style of the picture's file, with its notes. With --time, the notes give the number
 /// of samples that repeats the picture. The notes of an unfinished picture say so.
+ImageStyle style_of(const RenderCommand& resolved, const Camera& camera, const std::string& scene) {
+  return style_of(resolved, {scene, settings_text(resolved, camera), scene_name(resolved.scene)});
+}
+
 ImageStyle LongRender::style() const {
   Identity identity = identity_;
   identity.settings = repeatable(identity.settings, picture_.total_samples());
-  ImageStyle style{format_of(command_.image, command_.format),
-                   command_.srgb || command_.colored ? Tone::srgb : Tone::authored,
-                   notes_of(identity),
-                   layers_};
+  ImageStyle style = style_of(command_, identity);
+  style.layers = layers_;
   char text[32];
   std::snprintf(text, sizeof text, "%.1f %% of the work", 100 * share_done());
   if (!picture_.is_finished())

@@ -16,6 +16,11 @@ namespace grelha {
 /// Throws UsageError when several ranks are to share a picture that only one can render.
 void check_shareable(const RenderCommand& command, const Ranks& ranks);
 
+/// How a picture's file looks. `resolved` and `camera`: after apply_effects().
+ImageStyle style_of(const RenderCommand& resolved,
+                    const Camera& camera,
+                    const std::string& scene_digest);
+
 /// A render that saves and shows its intermediate state, and can be stopped.
 class LongRender {
  public:

@@ -55,6 +55,12 @@ struct ColorCounts {
   bool any() const { return of_vertices || of_faces; }
 };
 
+/// A ball about the middle of a box around points.
+struct Ball {
+  Float3 center;
+  double radius = 0;  ///< 0: none
+};
+
 /// A scene file after all checks: everything the kernel needs and what the file said besides.
 struct SceneFile {
   Scene scene;
@@ -74,7 +80,7 @@ struct SceneFile {
   std::uint64_t source_bytes = 0;
   std::vector<std::string> meshes;                     ///< files it named
   bool default_camera = false, default_light = false;  ///< made up, for a bare PLY
-  double reach = 0;  ///< how far a bare mesh reaches from the point that its camera looks at
+  Ball ball;                                           ///< around a bare mesh
 };
 
 /// Called with one line per warning, `file:line:column: warning: ...`.

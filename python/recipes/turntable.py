@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Pictures of a mesh from all sides, on one sheet: `turntable.py [MESH] [-o PICTURE]`.
 
-Without a mesh it makes a jug. The mesh turns, camera and lights stay.
+Without a mesh it makes a jug, and paints it. The lights follow the camera.
 """
 import argparse
 
@@ -34,24 +34,26 @@ def jug():
     bend = np.linspace(-1.5, 1.85, 60)  # both ends lie in the body
     handle = np.stack([0.42 + 0.3 * np.cos(bend), 0.36 * np.sin(bend)], -1)
     (v, f), (w, g) = turned(body, 0, up), turned(np.full(60, 0.05), 0.66, handle)
-    return np.concatenate([v, w]), np.concatenate([f, g + len(v)])
+    vertices = np.concatenate([v, w])
+    around, z = np.arctan2(vertices[:, 1], vertices[:, 0]), vertices[:, 2]
+    wave = np.abs(z - 0.62 - 0.05 * np.sin(6 * around)) < 0.04
+    band = (np.abs(z - 0.45) < 0.02) | (np.abs(z - 0.79) < 0.02) | (z > 1.12)
+    clay, glaze, blue = np.uint8([[196, 110, 72], [240, 232, 214], [38, 76, 140]])
+    colors = np.where(wave[:, None], glaze, np.where(band[:, None], blue, clay))
+    return vertices, np.concatenate([f, g + len(v)]), colors
 
 
 parser = argparse.ArgumentParser(description=__doc__)
 parser.add_argument("mesh", nargs="?")
 parser.add_argument("-o", "--output", default="turntable.png")
 options = parser.parse_args()
-scene = grelha.read(options.mesh) if options.mesh else grelha.Scene(*jug())
-vertices, faces, view = scene.vertices, scene.faces, scene.camera
-middle, up = np.array(view["at"]), np.array(view["up"]) / np.linalg.norm(view["up"])
-pictures = []
-for angle in np.arange(COLUMNS * ROWS) * 2 * np.pi / (COLUMNS * ROWS):
-    arm = vertices - middle  # Rodrigues' formula
-    moved = (arm * np.cos(angle) + np.cross(up, arm) * np.sin(angle)
-             + np.outer(arm @ up, up) * (1 - np.cos(angle)))
-    pictures.append(grelha.Scene(moved + middle, faces).render(
-        SIDE, SIDE, samples=16, eye=view["eye"], at=view["at"], up=view["up"],
-        angle=1.15 * view["angle"]))
+if options.mesh:
+    scene = grelha.read(options.mesh)
+else:
+    vertices, faces, colors = jug()
+    scene = grelha.Scene(vertices, faces, colors=colors)
+pictures = [scene.render(SIDE, SIDE, samples=16, orbit=(360 * k / (COLUMNS * ROWS), 0))
+            for k in range(COLUMNS * ROWS)]
 rows = [np.concatenate(pictures[r * COLUMNS:(r + 1) * COLUMNS], axis=1) for r in range(ROWS)]
-grelha.write_image(options.output, np.concatenate(rows))
-print(f"{COLUMNS * ROWS} pictures of {len(faces)} triangles")
+grelha.write_image(options.output, np.concatenate(rows), srgb=scene.colors is not None)
+print(f"{COLUMNS * ROWS} pictures of {len(scene.faces)} triangles")

@@ -60,8 +60,11 @@ std::vector<T> things_of(py::handle given, std::size_t floats) {
   return things;
 }
 
+py::tuple point(const Float3& p) {
+  return py::make_tuple(p.x, p.y, p.z);
+}
+
 py::tuple tuple_of_camera(const Camera& c) {
-  const auto point = [](const Float3& p) { return py::make_tuple(p.x, p.y, p.z); };
   return py::make_tuple(
       point(c.eye), point(c.at), point(c.up), c.angle_deg, c.width, c.height, c.aperture, c.focus);
 }
@@ -93,12 +96,13 @@ Camera camera_of(const py::tuple& state) {
 
 py::tuple FileScene::state() const {
   const Scene& s = model_->scene();
-  return py::make_tuple(state_of(*model_),
-                        floats_of(s.materials, kMaterialFloats),
-                        floats_of(view_.lighting.lights, kLightFloats),
-                        floats_of(std::vector<Float3>{view_.lighting.background}, 3),
-                        tuple_of_camera(view_.camera),
-                        py::make_tuple(view_.made_up_lights, view_.reach, samples_));
+  return py::make_tuple(
+      state_of(*model_),
+      floats_of(s.materials, kMaterialFloats),
+      floats_of(view_.lighting.lights, kLightFloats),
+      floats_of(std::vector<Float3>{view_.lighting.background}, 3),
+      tuple_of_camera(view_.camera),
+      py::make_tuple(view_.made_up_lights, point(view_.ball.center), view_.ball.radius, samples_));
 }
 
 FileScene FileScene::of_state(const py::tuple& state) {
@@ -110,11 +114,12 @@ FileScene FileScene::of_state(const py::tuple& state) {
   if (background.size() != 1)
     throw py::value_error("state: expected one background");
   FileScene scene;
-  const auto [made_up, reach, samples] = state[5].cast<std::tuple<bool, double, int>>();
+  const auto [made_up, center, radius, samples] =
+      state[5].cast<std::tuple<bool, py::object, double, int>>();
   scene.view_ = {camera_of(state[4].cast<py::tuple>()),
                  {things_of<Light>(state[2], kLightFloats), background[0]},
                  made_up,
-                 reach};
+                 {point_of(center), radius}};
   scene.samples_ = samples;
   if (scene.samples_ < 1 || scene.samples_ > kMostSamples)
     throw py::value_error("state: expected 1 sample or more");

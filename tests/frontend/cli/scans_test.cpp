@@ -36,5 +36,63 @@ TEST_F(Scans, ColorsGoThroughTheCurveInPartsAsWell) {
   EXPECT_EQ(run("info scan.ply --no-colors").out.find("colors"), std::string::npos);
 }
 
+/// Every view is the picture that its own command makes, notes and all.
+TEST_F(Scans, ViewsOfATurntableAreThoseOfTheirCommands) {
+  const std::string effects = " --size 20x14 --samples 4 --shadows random:.5 --lens 2";
+  for (const std::string lights : {"", " --lights mesh"}) {
+    expect_fine("render scan.ply --turntable 12 --orbit 7,10,1.2 -o out/v{}.png" + effects +
+                lights);
+    for (int k = 0; k < 12; ++k) {
+      expect_fine("render scan.ply --orbit " + std::to_string(7 + 30 * k) + ",10,1.2 -o one.png" +
+                  effects + lights);
+      const std::string number = (k < 10 ? "0" : "") + std::to_string(k);
+      EXPECT_EQ(folder_.read("out/v" + number + ".png"), folder_.read("one.png")) << number;
+    }
+  }
+  EXPECT_NE(folder_.read("out/v00.png"), folder_.read("out/v06.png"));
+}
+
+/// A sheet has the views row by row, and the background where there is none.
+TEST_F(Scans, ASheetHasAllViews) {
+  expect_fine("render scan.ply --turntable 5 --size 8x6 -o sheet.pfm");
+  expect_fine("render scan.ply --turntable 5 --size 8x6 -o v{}.pfm");
+  const auto pixels = [&](const std::string& name, std::size_t count) {
+    const std::string bytes = folder_.read(name);
+    return bytes.substr(bytes.size() - 12 * count);
+  };
+  const std::string sheet = pixels("sheet.pfm", 24 * 12);
+  for (int k = 0; k < 5; ++k) {
+    const std::string view = pixels("v" + std::to_string(k) + ".pfm", 8 * 6);
+    for (int y = 0; y < 6; ++y) {  // from below
+      const std::size_t row = std::size_t(y + (k < 3 ? 6 : 0)), left = std::size_t(8 * (k % 3));
+      EXPECT_EQ(sheet.substr(12 * (24 * row + left), 12 * 8),
+                view.substr(12 * 8 * std::size_t(y), 12 * 8))
+          << "view " << k << ", row " << y;
+    }
+  }
+  EXPECT_EQ(sheet.substr(12 * 16, 12), sheet.substr(12 * 23, 12)) << "no sixth view";
+}
+
+TEST_F(Scans, TurntablesThatCannotBe) {
+  const auto error = [&](const std::string& arguments) {
+    const Outcome made = run("render scan.ply " + arguments);
+    EXPECT_EQ(made.status, 2) << made.err;
+    return made.err;
+  };
+  EXPECT_EQ(error("--turntable 0"),
+            "grelha: error: --turntable: expected a whole number from 1 to 3600, found \"0\"\n");
+  EXPECT_EQ(error("--turntable 3 ball.nff"), "grelha: error: --turntable: expected one scene\n");
+  EXPECT_EQ(
+      error("--turntable 3 -o a.grelha"),
+      "grelha: error: --turntable makes whole pictures: no --rows, I:J, --checkpoint, --preview "
+      "or .grelha\n");
+  EXPECT_EQ(error("--turntable 3 --stats -"),
+            "grelha: error: --turntable: no --layers, --stats, --time SECONDS, --samples-map or "
+            "--error-map\n");
+  EXPECT_EQ(error("--turntable 9 -o a.pfm --size 65536x1"),
+            "grelha: error: --turntable: expected a sheet of at most 65536 pixels a side, found "
+            "196608x3; {} in -o makes a file of each view\n");
+}
+
 }  // namespace
 }  // namespace grelha::test

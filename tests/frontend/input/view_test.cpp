@@ -233,13 +233,13 @@ TEST(View, OfASceneKeepsItsLights) {
   ViewOptions options;
   options.orbit = {180, 0, 1};
   options.background = {1, .5f, 0};
-  apply_view(options, file);
+  apply_view(view_of(file), options, file);
   EXPECT_EQ(file.camera.eye, (Float3{0, 0, -5}));
   EXPECT_EQ(file.scene.lights.at(0).position, (Float3{1, 2, 3}));
   EXPECT_EQ(file.scene.background, (Float3{1, .5f, 0}));
   EXPECT_EQ(lines_of(view_of(file), {}).size(), 2u) << "the lights stand in the file";
   options.lights_follow = true;
-  EXPECT_THROW(apply_view(options, file), std::invalid_argument);
+  EXPECT_THROW(apply_view(view_of(file), options, file), std::invalid_argument);
 }
 
 TEST(View, ACameraThatCannotSeeIsRefused) {
