@@ -5,7 +5,8 @@ t counts lengths of the ray's direction; all other lengths are in the units of t
 docs/python.md has examples.
 """
 from ._grelha import __version__
-from ._results import ClosestPoints, CrossingLists, Findings, HitLists, Hits, MeshCheck
+from ._results import (ClosestPoints, CrossingLists, Findings, HitLists, Hits, MeshCheck,
+                       Surfaces)
 from ._scene import Scene, read, write_image
 from ._world import World
 
@@ -13,4 +14,4 @@ for _thing in (World, Scene, read, write_image):
     _thing.__module__ = "grelha"
 
 __all__ = ["ClosestPoints", "CrossingLists", "Findings", "HitLists", "Hits", "MeshCheck", "Scene",
-           "World", "__version__", "read", "write_image"]
+           "Surfaces", "World", "__version__", "read", "write_image"]

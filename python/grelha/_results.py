@@ -64,3 +64,11 @@ class MeshCheck(NamedTuple):
     def edge_manifold(self):
         """True if no edge has more than two triangles."""
         return self.nonmanifold_edges.count == 0
+
+
+class Surfaces(NamedTuple):
+    """What rays hit: arrays with one element for each ray, of shape (3,) and () for one ray."""
+    points: Any  # float64 or float32 (..., 3)
+    normals: Any  # float32 (..., 3)
+    colors: Any  # float32 (..., 3)
+    id: Any  # int64; -1 without a hit

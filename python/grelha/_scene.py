@@ -1,5 +1,6 @@
 """Scene: what is rendered, and the functions that read and write files."""
 from . import _grelha
+from ._results import Surfaces
 from ._world import World, _expect_unmade
 
 
@@ -16,13 +17,15 @@ class Scene:
 
     colors   (vertices, 3): uint8 is sRGB, other numbers are light from 0 to 1. A picture of them is
              light as well: write_image(path, image, srgb=True).
+    material a dict of what differs from light grey: diffuse, specular, mirror and emission (a number
+             or (3,)), shine, transmission, ior, roughness
     """
 
     __slots__ = ("_core", "__weakref__")
 
-    def __init__(self, vertices, faces, *, colors=None, threads=0):
+    def __init__(self, vertices, faces, *, colors=None, material=None, threads=0):
         _expect_unmade(self)
-        self._core = _grelha.scene_of_mesh(vertices, faces, colors, threads)
+        self._core = _grelha.scene_of_mesh(vertices, faces, colors, material, threads)
 
     @classmethod
     def _of(cls, core):
@@ -101,16 +104,41 @@ class Scene:
         view = (width, height, eye, at, up, angle, orbit, orthographic, lights, background)
         return self._core.render(view, samples, error, seed, depth, threads)
 
+    def camera_rays(self, width=None, height=None, *, eye=None, at=None, up=None, angle=None,
+                    orbit=None, orthographic=None):
+        """The rays through the centres of pixels, row 0 on top: (origins, directions).
 
-def read(path, *, colors=True, threads=0):
+        The arguments are those of render(). Both have the shape (height, width, 3); directions are
+        float32 of length 1. A picture of samples=1 is made of these rays.
+        """
+        return self._core.camera_rays((width, height, eye, at, up, angle, orbit, orthographic,
+                                       None, None))
+
+    def surfaces(self, origins, directions, *, threads=0):
+        """What rays hit first: Surfaces(points, normals, colors, id).
+
+        origins, directions   as of World.closest
+
+        points    (..., 3) in the units of the vertices; NaN without a hit
+        normals   float32 (..., 3), unit: those of vertices mixed, else of the face, on the side
+                  from which its corners run counter-clockwise; NaN without a hit
+        colors    float32 (..., 3), the share of light that is scattered: the material's diffuse
+                  times the mixed colours of vertices; NaN without a hit
+        id        int64 (...), as of World.closest
+        """
+        return Surfaces(*self._core.surfaces(origins, directions, threads))
+
+
+def read(path, *, colors=True, material=None, threads=0):
     """Reads an NFF, P3F or PLY file, each also gzipped: a Scene.
 
-    colors   False leaves out those of meshes
+    colors     False leaves out those of meshes
+    material   of a PLY file, as of Scene
 
     Its warnings are UserWarnings. Raises OSError for what cannot be read, ValueError with file,
     line and column for what is no scene.
     """
-    return Scene._of(_grelha.scene_of_file(path, bool(colors), threads))
+    return Scene._of(_grelha.scene_of_file(path, bool(colors), material, threads))
 
 
 def write_image(path, image, *, srgb=False):

@@ -12,10 +12,10 @@
 #include "frontend/input/default_view.hpp"
 #include "frontend/input/effects.hpp"
 #include "frontend/input/read_scene.hpp"
-#include "frontend/ply/ply_faces.hpp"
 #include "frontend/scene/scene_builder.hpp"
 #include "grelha/render.hpp"
 #include "src/hear.hpp"
+#include "src/materials.hpp"
 
 namespace grelha::python {
 namespace {
@@ -37,25 +37,6 @@ py::tuple tuple_of(const std::array<double, 3>& v) {
 
 using Point = std::array<double, 3>;
 
-/// Bytes are sRGB, other numbers light.
-void put_colors(py::handle given, Triangles& triangles) {
-  const bool bytes = py::isinstance<py::array_t<std::uint8_t>>(given);
-  const Triples v(given, "colors");
-  if (v.full_shape() != Shape{py::ssize_t(triangles.vertex_count()), 3})
-    wrong_value("colors",
-                "shape (" + std::to_string(triangles.vertex_count()) + ", 3), one a vertex",
-                text_of(v.full_shape()));
-  std::vector<float>* const channels[] = {&triangles.red, &triangles.green, &triangles.blue};
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    for (std::size_t i = 0; i < v.count(); ++i) {
-      const double number = v.points().at(i, axis);
-      const float light = bytes ? light_of_byte(number) : float(number);
-      if (!(light >= 0 && light <= 1))
-        wrong_value("colors", "uint8, or numbers from 0 to 1", std::to_string(number));
-      channels[axis]->push_back(light);
-    }
-}
-
 /// None is absent.
 ViewOptions::Point point_in(py::handle given, const char* name) {
   if (given.is_none())
@@ -69,13 +50,6 @@ ViewOptions::Point point_in(py::handle given, const char* name) {
 
 std::optional<double> optional_number(py::handle given, const char* name) {
   return given.is_none() ? std::nullopt : std::optional(number_in(given, name));
-}
-
-Float3 color_of(const Point& p, const char* name) {
-  for (const double channel : p)
-    if (!(channel >= 0 && channel <= kLargest))
-      wrong_value(name, "light from 0 to 1e18", std::to_string(channel));
-  return {float(p[0]), float(p[1]), float(p[2])};
 }
 
 Orbit orbit_in(py::handle given) {
@@ -122,7 +96,7 @@ FileScene FileScene::of(SceneFile file, bool in_double, int threads) {
   return scene;
 }
 
-FileScene FileScene::read(py::handle path, bool colors, int threads) {
+FileScene FileScene::read(py::handle path, bool colors, py::handle material, int threads) {
   const std::string name = path_in(path);
   py::module_::import("os").attr("stat")(path);  // its errors are the ones that Python knows
   SceneFile file;
@@ -135,14 +109,16 @@ FileScene FileScene::read(py::handle path, bool colors, int threads) {
     file = read_scene(name, keep, options);
   });
   warn(warnings);
+  if (!material.is_none() && !file.default_camera)
+    throw py::value_error("material: expected a mesh, found a scene with materials of its own");
+  if (!material.is_none())
+    put_material(material, file.scene.materials);
   const bool framed = file.frame != Frame{};
   return of(std::move(file), framed, threads);
 }
 
-FileScene FileScene::of_mesh(py::handle vertices,
-                             py::handle faces,
-                             py::handle colors,
-                             int threads) {
+FileScene FileScene::of_mesh(
+    py::handle vertices, py::handle faces, py::handle colors, py::handle material, int threads) {
   ModelParts mesh = mesh_parts(vertices, faces);
   SceneFile file;
   file.frame.offset = mesh.scene.offset;
@@ -151,6 +127,8 @@ FileScene FileScene::of_mesh(py::handle vertices,
   if (file.colors.of_vertices)
     put_colors(colors, file.scene.geometry.triangles);
   file.scene.materials = {default_mesh_material(file.colors.of_vertices)};
+  if (!material.is_none())
+    put_material(material, file.scene.materials);
   add_default_view(file);
   return of(std::move(file), mesh.in_double, threads);
 }

@@ -23,9 +23,10 @@ struct RenderArguments {
 class FileScene {
  public:
   /// Reads a file. Its warnings are Python's.
-  static FileScene read(py::handle path, bool colors, int threads);
+  static FileScene read(py::handle path, bool colors, py::handle material, int threads);
   /// A mesh as the program shows a bare PLY: its own view, three lights, light grey.
-  static FileScene of_mesh(py::handle vertices, py::handle faces, py::handle colors, int threads);
+  static FileScene of_mesh(
+      py::handle vertices, py::handle faces, py::handle colors, py::handle material, int threads);
 
   py::tuple state() const;
   /// Throws ValueError for what state() did not make.
@@ -36,6 +37,10 @@ class FileScene {
   py::array_t<double> lights() const;
   py::object colors() const;  ///< of the vertices (vertices, 3), or None
   py::array_t<float> render(const RenderArguments& given) const;
+  /// Origins and directions of the rays through the centres of pixels (h, w, 3).
+  py::tuple camera_rays(const ViewArguments& given) const;
+  /// Points, normals, colours and ids of what rays hit first.
+  py::tuple surfaces(py::handle origins, py::handle directions, int threads) const;
 
  private:
   static FileScene of(SceneFile file, bool in_double, int threads);

@@ -28,12 +28,17 @@ ViewArguments view_in(const py::tuple& v) {
 
 void define_scene(py::module_& module) {
   module.def("scene_of_mesh",
-             [](py::handle vertices, py::handle faces, py::handle colors, py::handle threads) {
-               return FileScene::of_mesh(vertices, faces, colors, threads_in(threads));
+             [](py::handle vertices,
+                py::handle faces,
+                py::handle colors,
+                py::handle material,
+                py::handle threads) {
+               return FileScene::of_mesh(vertices, faces, colors, material, threads_in(threads));
              });
-  module.def("scene_of_file", [](py::handle path, bool colors, py::handle threads) {
-    return FileScene::read(path, colors, threads_in(threads));
-  });
+  module.def("scene_of_file",
+             [](py::handle path, bool colors, py::handle material, py::handle threads) {
+               return FileScene::read(path, colors, material, threads_in(threads));
+             });
   module.def("scene_of", &FileScene::of_state);
   py::class_<FileScene> scene(module, "SceneCore");
   scene.def("state", &FileScene::state);
@@ -41,6 +46,14 @@ void define_scene(py::module_& module) {
   scene.def("camera", &FileScene::camera);
   scene.def("lights", &FileScene::lights);
   scene.def("colors", &FileScene::colors);
+  scene.def("camera_rays", [](const FileScene& self, const py::tuple& view) {
+    return self.camera_rays(view_in(view));
+  });
+  scene.def(
+      "surfaces",
+      [](const FileScene& self, py::handle origins, py::handle directions, py::handle wanted) {
+        return self.surfaces(origins, directions, threads_in(wanted));
+      });
   scene.def("render",
             [](const FileScene& self,
                const py::tuple& view,

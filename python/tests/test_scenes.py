@@ -178,6 +178,69 @@ class Pictures(unittest.TestCase):
             with self.assertRaisesRegex(ValueError, "srgb"):
                 grelha.write_image(path.with_suffix(".exr"), scene.render(4, 4), srgb=True)
 
+    def test_camera_rays_are_those_of_pictures(self):
+        vertices, faces = ball(12)
+        for shift in (0, FAR):
+            scene = grelha.Scene(vertices + shift, faces)
+            for view in ({}, {"orbit": (70, 20, 1.3)}, {"orthographic": 3},
+                         {"eye": np.array([0, 0, 4]) + shift, "at": np.zeros(3) + shift}):
+                origins, directions = scene.camera_rays(40, 30, **view)
+                self.assertEqual((origins.shape, directions.shape), ((30, 40, 3), (30, 40, 3)))
+                np.testing.assert_allclose((directions.astype(float) ** 2).sum(-1), 1, atol=1e-6)
+                hits = scene.world.closest(origins, directions)
+                image = scene.render(40, 30, samples=1, background=(9, 9, 9), **view)
+                np.testing.assert_array_equal(hits.id < 0, (image == 9).all(-1))
+                self.assertTrue(0.1 < (hits.id >= 0).mean() < 0.9)
+
+    def test_surfaces(self):
+        vertices, faces = ball(12)
+        colors = np.random.default_rng(3).random((len(vertices), 3))
+        for shift in (0, FAR):
+            scene = grelha.Scene(vertices + shift, faces, colors=colors,
+                                 material={"diffuse": (0.5, 1, 0.25)})
+            origins, directions = scene.camera_rays(50, 50)
+            hits, found = (scene.world.closest(origins, directions),
+                           scene.surfaces(origins, directions))
+            np.testing.assert_array_equal(found.id, hits.id)
+            there = hits.id >= 0
+            self.assertTrue(np.isnan(found.points[~there]).all() and (~there).any())
+            corners = (vertices.astype(float) + shift)[faces[hits.face[there]]]
+            weights = np.stack([1 - hits.u - hits.v, hits.u, hits.v], -1)[there].astype(float)
+            mixed = (weights[..., None] * corners).sum(1)
+            np.testing.assert_allclose(found.points[there], mixed, atol=1e-5)
+            normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+            normals /= np.linalg.norm(normals, axis=-1, keepdims=True)
+            np.testing.assert_allclose(found.normals[there], normals, atol=1e-5)
+            wanted = (weights[..., None] * colors[faces[hits.face[there]]]).sum(1) * (0.5, 1, 0.25)
+            np.testing.assert_allclose(found.colors[there], wanted, atol=1e-5)
+        one = scene.surfaces(origins[25, 25], directions[25, 25])
+        self.assertEqual((one.points.shape, one.id.shape), ((3,), ()))
+        balls = grelha.read(DATA / "balls.nff")
+        seen = balls.surfaces(*balls.camera_rays(20, 20))
+        self.assertGreater(len(np.unique(seen.colors[seen.id >= 0], axis=0)), 1)
+
+    def test_material(self):
+        vertices, faces = ball(12)
+        plain = grelha.Scene(vertices, faces).render(32, 32, samples=1)
+        same = grelha.Scene(vertices, faces, material={}).render(32, 32, samples=1)
+        np.testing.assert_array_equal(plain, same)
+        glow = {"diffuse": 0, "specular": 0, "emission": (0.25, 0.5, 1)}
+        image = grelha.Scene(vertices, faces, material=glow).render(
+            32, 32, samples=1, background=(0, 0, 0))
+        self.assertEqual({tuple(p) for p in image.reshape(-1, 3).tolist()},
+                         {(0, 0, 0), (0.25, 0.5, 1)})
+        mirror = grelha.read(DATA / "torus.ply", material={"mirror": 1, "diffuse": 0})
+        self.assertGreater(np.abs(mirror.render(32, 32) -
+                                  grelha.read(DATA / "torus.ply").render(32, 32)).max(), 0.1)
+        for wrong in ({"colour": 1}, {"diffuse": -1}, {"shine": np.nan}, {"diffuse": (1, 2)},
+                      {"transmission": 1, "ior": 0}):
+            with self.assertRaisesRegex(ValueError, "material"):
+                grelha.Scene(vertices, faces, material=wrong)
+        with self.assertRaisesRegex(TypeError, "material"):
+            grelha.Scene(vertices, faces, material=1)
+        with self.assertRaisesRegex(ValueError, "material: expected a mesh"):
+            grelha.read(DATA / "balls.nff", material={})
+
     def test_lights_and_background(self):
         scene = grelha.read(DATA / "balls.nff")
         picture = scene.render(40, 40, samples=4)

@@ -1,0 +1,99 @@
+#include "src/materials.hpp"
+
+#include <optional>
+#include <string>
+
+#include "frontend/ply/ply_faces.hpp"
+#include "frontend/scene/scene_builder.hpp"
+
+namespace grelha::python {
+
+Float3 color_of(const std::array<double, 3>& p, const char* name) {
+  for (const double channel : p)
+    if (!(channel >= 0 && channel <= kLargest))
+      wrong_value(name, "light from 0 to 1e18", std::to_string(channel));
+  return {float(p[0]), float(p[1]), float(p[2])};
+}
+
+/// Bytes are sRGB, other numbers light.
+void put_colors(py::handle given, Triangles& triangles) {
+  const bool bytes = py::isinstance<py::array_t<std::uint8_t>>(given);
+  const Triples v(given, "colors");
+  if (v.full_shape() != Shape{py::ssize_t(triangles.vertex_count()), 3})
+    wrong_value("colors",
+                "shape (" + std::to_string(triangles.vertex_count()) + ", 3), one a vertex",
+                text_of(v.full_shape()));
+  std::vector<float>* const channels[] = {&triangles.red, &triangles.green, &triangles.blue};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (std::size_t i = 0; i < v.count(); ++i) {
+      const double number = v.points().at(i, axis);
+      const float light = bytes ? light_of_byte(number) : float(number);
+      if (!(light >= 0 && light <= 1))
+        wrong_value("colors", "uint8, or numbers from 0 to 1", std::to_string(number));
+      channels[axis]->push_back(light);
+    }
+}
+
+namespace {
+
+/// Three numbers, or one for all.
+Float3 color_in(py::handle given, const std::string& name) {
+  const Doubles shape_of_given(given, name.c_str());
+  if (shape_of_given.shape().empty()) {
+    const double grey = number_in(given, name.c_str());
+    return color_of({grey, grey, grey}, name.c_str());
+  }
+  const Triples v(given, name.c_str());
+  if (!v.shape().empty())
+    wrong_value(name.c_str(), "a number or shape (3,)", text_of(v.full_shape()));
+  return color_of({v.points().at(0, 0), v.points().at(0, 1), v.points().at(0, 2)}, name.c_str());
+}
+
+float at_least_0(py::handle given, const std::string& name) {
+  const double number = number_in(given, name.c_str());
+  if (!(number >= 0 && number <= kLargest))
+    wrong_value(name.c_str(), "a number from 0 to 1e18", std::to_string(number));
+  return float(number);
+}
+
+}  // namespace
+
+void put_material(py::handle given, std::vector<Material>& materials) {
+  if (!py::isinstance<py::dict>(given))
+    wrong_type("material", "a dict", given);
+  std::optional<Float3> diffuse;
+  Material m = materials.at(0);
+  for (const auto& [key, value] : py::reinterpret_borrow<py::dict>(given)) {
+    const std::string field = py::str(key), name = "material[" + field + ']';
+    Float3* const color = field == "specular"   ? &m.specular
+                          : field == "mirror"   ? &m.mirror
+                          : field == "emission" ? &m.emission
+                                                : nullptr;
+    float* const number = field == "shine"          ? &m.shine
+                          : field == "transmission" ? &m.transmission
+                          : field == "ior"          ? &m.ior
+                          : field == "roughness"    ? &m.roughness
+                                                    : nullptr;
+    if (field == "diffuse")
+      diffuse = color_in(value, name);
+    else if (color)
+      *color = color_in(value, name);
+    else if (number)
+      *number = at_least_0(value, name);
+    else
+      throw py::value_error(
+          "material: expected diffuse, specular, mirror, emission, shine, transmission, ior or "
+          "roughness, found \"" +
+          field + '"');
+  }
+  if (m.transmission > 0 && !(m.ior > 0))
+    throw py::value_error("material[ior]: expected a number above 0");
+  for (Material& one : materials) {
+    m.diffuse = one.diffuse;
+    one = m;
+    if (diffuse && materials.size() == 1)
+      one.diffuse = *diffuse;
+  }
+}
+
+}  // namespace grelha::python

@@ -1,0 +1,23 @@
+#pragma once
+// Colours and materials as callers give them.
+
+#include <array>
+#include <vector>
+
+#include "grelha/geometry.hpp"
+#include "src/arrays.hpp"
+
+namespace grelha::python {
+
+/// Light of at least 0. Throws ValueError that names the argument.
+Float3 color_of(const std::array<double, 3>& color, const char* name);
+
+/// Gives the vertices colours (vertices, 3): bytes are sRGB, other numbers light from 0 to 1.
+/// Throws TypeError or ValueError.
+void put_colors(py::handle given, Triangles& triangles);
+
+/// Changes the materials of a mesh by a dict of their fields. Those of faces with colours keep
+/// their diffuse. Throws TypeError or ValueError that names the field.
+void put_material(py::handle given, std::vector<Material>& materials);
+
+}  // namespace grelha::python
