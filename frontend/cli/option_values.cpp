@@ -260,6 +260,16 @@ double picture_height(const std::string& text) {
   return fitting<double>("--orthographic", text, "a height above 0 and up to 1e18", fits);
 }
 
+double point_radius(const std::string& text) {
+  const auto fits = [](double v) { return v > 0 && v <= kLargest; };
+  return text == "auto" ? 0 : fitting<double>("--points", text, "auto, or a radius above 0", fits);
+}
+
+double smoothness(const std::string& text) {
+  const auto fits = [](double v) { return v > 0 && v <= 180; };
+  return fitting<double>("--smooth", text, "degrees above 0 and up to 180", fits);
+}
+
 Orbit orbit(const std::string& text) {
   constexpr const char* kExpected = "AZIMUTH,ELEVATION or AZIMUTH,ELEVATION,ZOOM";
   const auto p = parts("--orbit", text, 2, 3, kExpected);

@@ -41,6 +41,8 @@ std::array<double, 3> point(const std::string& option, const std::string& text);
 double angle(const std::string& text);
 double picture_height(const std::string& text);
 Orbit orbit(const std::string& text);
+double point_radius(const std::string& text);  ///< 0: auto
+double smoothness(const std::string& text);
 /// "R,G,B", or one number for all three.
 Float3 color(const std::string& option, const std::string& text);
 /// Seconds.

@@ -16,6 +16,7 @@ using namespace option_values;
 constexpr int kMaxThreads = 1024;
 constexpr int kMostViews = 3600;
 
+using Text = const std::string&;
 using Word = std::pair<std::string_view, int>;
 using Name = std::pair<std::string_view, std::string_view>;
 constexpr std::array kAccelerators{Word{"grid", 1}, Word{"none", 0}};
@@ -43,14 +44,14 @@ constexpr char kUnlisted[] = "";
 /// Adds files that stand by their place; an empty name, as an unset variable gives, is none.
 template <class Names>
 void positional(CLI::App& app, const char* name, Names& target, const char* help) {
-  const auto check = [](const std::string& text) {
+  const auto check = [](Text text) {
     return text.empty() ? "expected a file name, found \"\"" : "";
   };
   app.add_option(name, target, help)->required()->type_name("")->check(check);
 }
 
 void image_file(CLI::App& app, const char* name, std::string& target, const char* help) {
-  value(app, name, "FILE", help, [name, &target](const std::string& text) {
+  value(app, name, "FILE", help, [name, &target](Text text) {
     check_image_name(name, text);
     target = text;
   });
@@ -61,11 +62,21 @@ void add_input_options(CLI::App& app, InputOptions& input) {
         "--max-memory",
         "SIZE",
         "fail rather than take more: 512M, 6G [as much as the machine has]",
-        [&input](const std::string& text) { input.max_memory = memory_size(text); });
+        [&input](Text text) { input.max_memory = memory_size(text); });
   app.add_flag("--allow-outside",
                input.read.allow_outside,
                "scenes may name files outside their own folder");
-  app.add_flag("!--no-colors", input.read.colors, "leave out the colours that meshes have");
+  value(app,
+        "--points",
+        "RADIUS|auto",
+        "draw the vertices of meshes without faces as balls",
+        [&input](Text t) { input.read.meshes.point_radius = point_radius(t); });
+  value(app,
+        "--smooth",
+        "DEG",
+        "shade meshes without normals smoothly, but for edges that turn by more",
+        [&input](Text t) { input.read.meshes.smooth_deg = smoothness(t); });
+  app.add_flag("!--no-colors", input.read.meshes.colors, "leave out the colours that meshes have");
   app.add_flag("--strict",
                input.strict,
                "take a warning for an error: exit status 2; 3 where --error is not met");
@@ -80,9 +91,8 @@ void add_view(CLI::App& app, ViewOptions& view) {
     value(app, name, placeholder, help, std::move(take))->group("View");
   };
   const auto place = [&](const char* name, const char* help, ViewOptions::Point& of) {
-    add(name, "X,Y,Z", help, [name, &of](const std::string& text) { of = point(name, text); });
+    add(name, "X,Y,Z", help, [name, &of](Text text) { of = point(name, text); });
   };
-  using Text = const std::string&;
   place("--eye", "where the camera is [as the scene says; info prints it]", view.eye);
   place("--at", "the point it looks at", view.at);
   place("--up", "the direction that is up", view.up);
@@ -109,14 +119,12 @@ void add_build_options(CLI::App& app, BuildOptions& build) {
         "--density",
         "M",
         "grid cells: M per axis of a cube that holds one primitive [chosen by the kernel]",
-        [&build](const std::string& text) { build.density = density(text); });
+        [&build](Text text) { build.density = density(text); });
   value(app,
         "--accel",
         "grid|none",
         "none: every ray meets every primitive [grid]",
-        [&build](const std::string& text) {
-          build.grid = choice("--accel", text, kAccelerators) == 1;
-        })
+        [&build](Text text) { build.grid = choice("--accel", text, kAccelerators) == 1; })
       ->group(kUnlisted);
 }
 
@@ -127,26 +135,21 @@ void add_long_work(CLI::App& app, LongWork& work) {
       "--rows",
       "A:B",
       "render rows A up to B alone, to a .grelha that `grelha merge` takes (so does --samples I:J)",
-      [&work](const std::string& text) { work.rows = range("--rows", text, kMaxSide); })
+      [&work](Text text) { work.rows = range("--rows", text, kMaxSide); })
       ->group(kGroup);
   value(app,
         "--checkpoint",
         "FILE",
         "save now and then, and when stopped by SIGHUP, SIGINT or SIGTERM; the same command goes "
         "on from it",
-        [&work](const std::string& text) {
-          work.checkpoint = regular_file_name("--checkpoint", text);
-        })
+        [&work](Text text) { work.checkpoint = regular_file_name("--checkpoint", text); })
       ->group(kGroup);
-  value(app, "--checkpoint-every", "SECONDS", "how often [60]", [&work](const std::string& text) {
+  value(app, "--checkpoint-every", "SECONDS", "how often [60]", [&work](Text text) {
     work.save_interval = interval("--checkpoint-every", text);
   })->group(kGroup);
-  value(app,
-        "--preview",
-        "SECONDS",
-        "write the picture so far as often",
-        [&work](const std::string& text) { work.show_interval = interval("--preview", text); })
-      ->group(kGroup);
+  value(app, "--preview", "SECONDS", "write the picture so far as often", [&work](Text text) {
+    work.show_interval = interval("--preview", text);
+  })->group(kGroup);
 }
 
 void add_format(CLI::App& app, std::optional<ImageFormat>& format) {
@@ -154,7 +157,7 @@ void add_format(CLI::App& app, std::optional<ImageFormat>& format) {
         "--format",
         "png|hdr|pfm|exr",
         "of the picture, where its name does not say [png]",
-        [&format](const std::string& text) { format = choice("--format", text, kImageFormats); });
+        [&format](Text text) { format = choice("--format", text, kImageFormats); });
 }
 
 void add_picture_files(CLI::App& sub, RenderCommand& command) {
@@ -163,13 +166,13 @@ void add_picture_files(CLI::App& sub, RenderCommand& command) {
         "FILE",
         ".png, .hdr, .pfm, .exr, .grelha (to merge), a folder, - (stdout); {} in it is SCENE's "
         "name [{}.png]",
-        [&command](const std::string& text) { command.image = file_name("-o", text); });
+        [&command](Text text) { command.image = file_name("-o", text); });
   add_format(sub, command.format);
   value(sub,
         "--layers",
         "LIST",
         "depth,normal,id or some: .exr: what is seen through the centres of pixels",
-        [&command](const std::string& text) { command.layers = layers(text); });
+        [&command](Text text) { command.layers = layers(text); });
 }
 
 void add_turntable(CLI::App& sub, RenderCommand& command) {
@@ -177,33 +180,28 @@ void add_turntable(CLI::App& sub, RenderCommand& command) {
         "--turntable",
         "N",
         "views all around, {} in -o is their number; without {}: a sheet of all",
-        [&command](const std::string& text) {
-          command.turntable = whole("--turntable", text, 1, kMostViews);
-        })
+        [&command](Text text) { command.turntable = whole("--turntable", text, 1, kMostViews); })
       ->group("View");
 }
 
 /// Adds the options for size, threads and the length of paths.
 void add_limits(CLI::App& sub, RenderCommand& command) {
-  value(sub, "--size", "WxH", "pixels [as the scene says]", [&command](const std::string& text) {
+  value(sub, "--size", "WxH", "pixels [as the scene says]", [&command](Text text) {
     parse_size(text, command.width, command.height);
   });
-  value(
-      sub, "-j,--threads", "N", "threads [one per processor]", [&command](const std::string& text) {
-        command.render.threads = command.build.threads = whole("--threads", text, 1, kMaxThreads);
-      });
+  value(sub, "-j,--threads", "N", "threads [one per processor]", [&command](Text text) {
+    command.render.threads = command.build.threads = whole("--threads", text, 1, kMaxThreads);
+  });
   value(sub,
         "--depth",
         "N",
         "longest path of a ray, the eye ray counted as 1 [5]",
-        [&command](const std::string& text) {
-          command.render.depth = whole("--depth", text, 1, kMostDepth);
-        });
+        [&command](Text text) { command.render.depth = whole("--depth", text, 1, kMostDepth); });
   value(sub,
         "--min-weight",
         "W",
         "paths end that can bring less than W (white is 1); 0 keeps all [1/16384]",
-        [&command](const std::string& text) { command.render.min_weight = min_weight(text); });
+        [&command](Text text) { command.render.min_weight = min_weight(text); });
 }
 
 /// Adds the options for the number of samples.
@@ -213,17 +211,17 @@ void add_sample_counts(CLI::App& sub, RenderCommand& command) {
         "N",
         "rays through each pixel [1; with a lens, area light or rough mirror 16]; I:J/N: those "
         "from I up to J",
-        [&command](const std::string& text) { parse_samples(text, command); });
+        [&command](Text text) { parse_samples(text, command); });
   value(sub,
         "--error",
         "E",
         "as many samples, where they help most, as an RMSE of E takes (white is 1)",
-        [&command](const std::string& text) { parse_error_bound(text, command.render.refine); });
+        [&command](Text text) { parse_error_bound(text, command.render.refine); });
   value(sub,
         "--time",
         "SECONDS",
         "the same for so long; samples:N repeats what a run reported",
-        [&command](const std::string& text) { parse_time(text, command.render.refine); });
+        [&command](Text text) { parse_time(text, command.render.refine); });
   image_file(sub,
              "--samples-map",
              command.samples_map,
@@ -237,21 +235,15 @@ void add_sample_locations(CLI::App& sub, Effects& effects) {
         "--sampler",
         "sobol|blue|jitter|unshuffled|random",
         "where they lie [sobol]",
-        [&effects](const std::string& text) {
-          effects.sampler = choice("--sampler", text, kSamplers);
-        });
-  value(sub,
-        "--seed",
-        "N",
-        "another seed, an independent picture [0]",
-        [&effects](const std::string& text) {
-          effects.seed = std::uint32_t(whole("--seed", text, 0, 2147483647));
-        });
+        [&effects](Text text) { effects.sampler = choice("--sampler", text, kSamplers); });
+  value(sub, "--seed", "N", "another seed, an independent picture [0]", [&effects](Text text) {
+    effects.seed = std::uint32_t(whole("--seed", text, 0, 2147483647));
+  });
   value(sub,
         "--aa",
         "off|jitter:N|adaptive:T,D",
         "N x N subpixels; or pixels split where corners differ by T, D times; off: one sample",
-        [&effects](const std::string& text) { parse_aa(text, effects); });
+        [&effects](Text text) { parse_aa(text, effects); });
 }
 
 void add_effects(CLI::App& sub, Effects& effects) {
@@ -259,17 +251,17 @@ void add_effects(CLI::App& sub, Effects& effects) {
         "--shadows",
         "hard|random:SIZE|area:SIZE,N",
         "of point lights, or of squares of this side in their place",
-        [&effects](const std::string& text) { parse_shadows(text, effects); });
+        [&effects](Text text) { parse_shadows(text, effects); });
   value(sub,
         "--lens",
         "A,F,N",
         "aperture in pixels, focal distance, lens points a subpixel",
-        [&effects](const std::string& text) { parse_lens(text, effects); });
+        [&effects](Text text) { parse_lens(text, effects); });
   value(sub,
         "--glossy",
         "R,N",
         "roughness of mirrors; N rays around the mirror direction",
-        [&effects](const std::string& text) { parse_glossy(text, effects); });
+        [&effects](Text text) { parse_glossy(text, effects); });
 }
 
 /// Adds the options for ray traversal.
@@ -278,15 +270,13 @@ void add_traversal(CLI::App& sub, RenderCommand& command) {
         "--isa",
         "scalar|sse2|avx2|avx512|neon|best",
         "instruction set [best]",
-        [&command](const std::string& text) { command.render.isa = choice("--isa", text, kIsas); })
+        [&command](Text text) { command.render.isa = choice("--isa", text, kIsas); })
       ->group(kUnlisted);
   value(sub,
         "--packet",
         "1|16|64|256",
         "most rays that march together [256]",
-        [&command](const std::string& text) {
-          command.render.packet = choice("--packet", text, kPackets);
-        })
+        [&command](Text text) { command.render.packet = choice("--packet", text, kPackets); })
       ->group(kUnlisted);
 }
 
@@ -311,7 +301,7 @@ void add_render(CLI::App& app, RenderCommand& command) {
         "--stats",
         "FILE",
         "write counts and times as JSON; - for stdout",
-        [&command](const std::string& text) { command.stats = file_name("--stats", text); });
+        [&command](Text text) { command.stats = file_name("--stats", text); });
   sub.add_flag("-q,--quiet", command.quiet, "no progress bar, no summary line");
   add_input_options(sub, command.input);
   sub.add_flag("--srgb", command.srgb, "PNG: colours are light, show them through the sRGB curve");
@@ -342,7 +332,7 @@ void add_compare(CLI::App& app, CompareCommand& command) {
         "--max-rmse",
         "X",
         "exit with status 1 when the RMSE is above X (white is 1)",
-        [&command](const std::string& text) { command.max_rmse = rmse_bound(text); });
+        [&command](Text text) { command.max_rmse = rmse_bound(text); });
   sub.add_flag("--display",
                command.display,
                "compare what a screen shows: each channel cut to 0 to 1 first");
@@ -359,7 +349,7 @@ void add_merge(CLI::App& app, MergeCommand& command) {
         "-o,--output",
         "FILE",
         ".png, .hdr, .pfm, .exr or .grelha, - for stdout",
-        [&command](const std::string& text) { command.output = file_name("-o", text); })
+        [&command](Text text) { command.output = file_name("-o", text); })
       ->required();
   add_format(sub, command.format);
   sub.add_flag("--srgb", command.srgb, "PNG: colours are light, show them through the sRGB curve");
@@ -370,16 +360,14 @@ void add_scene(CLI::App& app, SceneCommand& command) {
   CLI::App& sub = *app.add_subcommand("scene", "Write one of the built-in scenes");
   sub.footer("Example: grelha scene balls --size 4 -o balls4.nff");
   sub.add_option("NAME", command.name, "which scene (see --list)")->type_name("");
-  value(sub,
-        "--size",
-        "N",
-        "size factor [by scene, see --list]",
-        [&command](const std::string& text) { command.size = whole("--size", text, 0, 1000); });
+  value(sub, "--size", "N", "size factor [by scene, see --list]", [&command](Text text) {
+    command.size = whole("--size", text, 0, 1000);
+  });
   value(sub,
         "-o,--output",
         "FILE",
         "[stdout; a scene with a mesh: its name with .nff and .ply]",
-        [&command](const std::string& text) { command.output = file_name("-o", text); });
+        [&command](Text text) { command.output = file_name("-o", text); });
   sub.add_flag("--spd", command.spd, "balls, mount: as SPD writes them, not as the course does");
   sub.add_flag("--list", command.list, "list the scenes and their sizes");
 }

@@ -43,7 +43,7 @@ void warn_empty_scene(const std::string& path, const SceneFile& file, const Warn
   if (file.points > 0)
     warn(path + ": warning: " + std::to_string(file.points) +
          (file.points == 1 ? " point has" : " points have") +
-         " no faces and will not be drawn: make a mesh of them, or spheres");
+         " no faces and will not be drawn: --points auto draws them as balls");
   else if (is_empty(scene.geometry))
     warn(path + ": warning: nothing to draw: add an object, such as \"s 0 0 0 1\"");
   if (!is_empty(scene.geometry) && !is_lit(scene))

@@ -18,8 +18,9 @@ Point3 moved(const Point3& a, double share, const Point3& b) {
   return {a[0] + share * b[0], a[1] + share * b[1], a[2] + share * b[2]};
 }
 
-/// Returns the vertices that triangles use; others may lie anywhere.
-std::vector<Point3> vertices_of(const Triangles& t) {
+/// Returns the vertices that triangles use, for others may lie anywhere, and the centres of balls.
+std::vector<Point3> points_of(const Geometry& g) {
+  const Triangles& t = g.triangles;
   std::vector<std::uint8_t> named(t.vertex_count());
   for (const auto* of : {&t.a, &t.b, &t.c})
     for (const std::uint32_t v : *of)
@@ -29,6 +30,8 @@ std::vector<Point3> vertices_of(const Triangles& t) {
   for (std::size_t v = 0; v < t.vertex_count(); ++v)
     if (named[v])
       found.push_back({t.x[v], t.y[v], t.z[v]});
+  for (std::size_t i = 0; i < g.spheres.size(); ++i)
+    found.push_back({g.spheres.x[i], g.spheres.y[i], g.spheres.z[i]});
   if (found.empty())
     found = {{-1, -1, -1}, {1, 1, 1}};
   return found;
@@ -133,7 +136,9 @@ Material default_mesh_material(bool has_colors) {
 }
 
 void add_default_view(SceneFile& file) {
-  const std::vector<Point3> points = vertices_of(file.scene.geometry.triangles);
+  const std::vector<Point3> points = points_of(file.scene.geometry);
+  const std::vector<float>& radii = file.scene.geometry.spheres.radius;
+  const double radius = radii.empty() ? 0 : *std::ranges::max_element(radii);
   Axes axes;
   if (is_on_z(points))
     axes.turn();
@@ -147,6 +152,10 @@ void add_default_view(SceneFile& file) {
     front = std::max(front, back);
     behind = std::min(behind, back);
   }
+  // balls touch the pyramid's sides further out
+  const double margin = radius * std::sqrt(1 + slope * slope);
+  for (double* const side : {&across.plus, &across.minus, &upward.plus, &upward.minus})
+    *side += margin;
   const double eye_back =
       std::max(across.distance(slope), upward.distance(slope));  // along axes.back
   // A tiny mesh far out must not put the eye on what it looks at in floats.
@@ -163,6 +172,7 @@ void add_default_view(SceneFile& file) {
   file.camera.up = in_floats(axes.high);
   file.camera.angle_deg = kAngleDeg;
   file.ball = ball_around(points);
+  file.ball.radius += radius;
   file.scene.lights = lights_around(file.camera);
   file.scene.background = {0.62f, 0.68f, 0.76f};
   if (file.colors.any())  // they are light: this looks the same through the sRGB curve

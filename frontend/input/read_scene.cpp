@@ -50,13 +50,13 @@ SceneFile read_mesh_only(const std::string& path,
   SceneFile file;
   file.frame = options.frame;
   file.source_bytes = bytes.size();
-  Mesh mesh = read_ply_mesh(path, bytes, warn, &progress, options.frame, options.colors);
+  Mesh mesh = read_ply_mesh(path, bytes, warn, &progress, options.frame, options.meshes.colors);
   std::string().swap(bytes);  // they are as large as the mesh
   file.counts.ply = mesh.face_count();
-  if (file.counts.ply == 0)
+  if (file.counts.ply == 0 && !options.meshes.point_radius)
     file.points = mesh.vertex_count();
   file.scene.materials.push_back(default_mesh_material(!mesh.red.empty()));
-  const CrossedFaces crossed = SceneBuilder(file).mesh(std::move(mesh), 0);
+  const CrossedFaces crossed = SceneBuilder(file, options.meshes).mesh(std::move(mesh), 0);
   if (const std::string text = crossed.text(); !text.empty() && warn)
     warn(path + ": warning: " + text);
   add_default_view(file);

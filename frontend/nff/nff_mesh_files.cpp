@@ -42,7 +42,7 @@ NffMeshFiles::NffMeshFiles(const std::string& scene,
     : folder_(std::filesystem::path(scene).parent_path()),
       warn_(warn),
       allow_outside_(options.allow_outside),
-      colors_(options.colors),
+      colors_(options.meshes.colors),
       load_(progress) {}
 
 /// Returns true if a file lies outside the scene's folder, after following all links. The reader

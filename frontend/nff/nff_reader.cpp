@@ -32,7 +32,8 @@ class NffReader {
         warning_list_(warn),
         meshes_(path, warn, options, progress),
         input_(words_, warning_list_, options.frame),
-        build_(file_),
+        build_(file_, options.meshes),
+        draws_points_(options.meshes.point_radius.has_value()),
         simple_(input_, file_),
         lights_(file_) {
     file_.source_bytes = text.size();
@@ -85,6 +86,7 @@ class NffReader {
   NffMeshFiles meshes_;
   NffInput input_;
   SceneBuilder build_;
+  const bool draws_points_;
   NffSimple simple_;
   NffView view_;
   NffLights lights_;
@@ -287,7 +289,7 @@ void NffReader::read_ply(std::string_view keyword) {
   const std::string path = meshes_.path(input_, name);
   Mesh mesh = meshes_.read(input_, name, path, file_);
   const std::size_t faces = mesh.face_count();
-  if (faces == 0)
+  if (faces == 0 && !draws_points_)
     file_.points += mesh.vertex_count();
   const CrossedFaces crossed = build_.mesh(std::move(mesh), material(keyword));
   if (const std::string text = crossed.text(); !text.empty() && warning_list_.first("of " + path))

@@ -42,7 +42,8 @@ struct CrossedFaces {
 /// counted in SceneFile::dropped instead.
 class SceneBuilder {
  public:
-  explicit SceneBuilder(SceneFile& file) : file_(file) {}
+  explicit SceneBuilder(SceneFile& file, const MeshOptions& options = {})
+      : file_(file), options_(options) {}
 
   void sphere(Float3 center, float radius, std::uint32_t material);
   void cone(Float3 base, float base_radius, Float3 apex, float apex_radius, std::uint32_t material);
@@ -85,7 +86,8 @@ class SceneBuilder {
                           std::uint32_t first_vertex,
                           std::uint32_t material,
                           std::span<const std::uint32_t> materials);
-  std::vector<std::uint32_t> materials_of(const Mesh& mesh, std::uint32_t of);
+  std::vector<std::uint32_t> materials_of(const Mesh& mesh, std::size_t count, std::uint32_t of);
+  void points(const Mesh& mesh, std::uint32_t material);
   Result mesh_face(std::span<const std::uint32_t> corner_points,
                    std::uint32_t first_vertex,
                    std::uint32_t material);
@@ -96,6 +98,7 @@ class SceneBuilder {
                                  const std::vector<float>& z) const;
 
   SceneFile& file_;
+  const MeshOptions options_;
   PolygonSplitter splitter_;
   std::vector<PolygonSplitter::Triangle> triangles_;
   std::vector<Float3> face_, all_points_, all_normals_;

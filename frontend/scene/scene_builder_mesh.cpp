@@ -1,10 +1,12 @@
 // Meshes in a scene, as SceneBuilder puts them there.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <utility>
 
 #include "frontend/scene/scene_builder.hpp"
+#include "frontend/scene/smooth_normals.hpp"
 
 namespace grelha {
 
@@ -106,15 +108,17 @@ void SceneBuilder::add_intersections() {
                                         at_crossing(colors, crossing)));
 }
 
-/// Gives each colour of faces a material: `of` with its diffuse times the colour. Returns those of
-/// the faces; empty if faces have none. `of` follows again, for it may be the one in use.
-std::vector<std::uint32_t> SceneBuilder::materials_of(const Mesh& mesh, std::uint32_t of) {
-  if (!mesh.colors_of_faces || mesh.red.size() != mesh.face_count())
+/// Gives each colour of faces, or of points, a material: `of` with its diffuse times the colour.
+/// Returns those of all; empty if they have none. `of` follows again, for it may be the one in use.
+std::vector<std::uint32_t> SceneBuilder::materials_of(const Mesh& mesh,
+                                                      std::size_t count,
+                                                      std::uint32_t of) {
+  if (mesh.red.empty() || mesh.red.size() != count)
     return {};
   std::vector<Material>& all = file_.scene.materials;
   const Material plain = all[of];
   std::map<std::array<float, 3>, std::uint32_t> found;
-  std::vector<std::uint32_t> materials(mesh.face_count());
+  std::vector<std::uint32_t> materials(count);
   for (std::size_t f = 0; f < materials.size(); ++f) {
     const std::array color{mesh.red[f], mesh.green[f], mesh.blue[f]};
     const auto [at, is_new] = found.try_emplace(color, std::uint32_t(all.size()));
@@ -129,7 +133,44 @@ std::vector<std::uint32_t> SceneBuilder::materials_of(const Mesh& mesh, std::uin
   return materials;
 }
 
+/// Half of the distance between points that lie evenly on half of their box's sides, and some more:
+/// balls of this radius leave few gaps.
+static double radius_for(const Mesh& mesh) {
+  constexpr double kShare = .7;
+  double size[3];
+  std::size_t axis = 0;
+  for (const std::vector<float>* const of : {&mesh.x, &mesh.y, &mesh.z}) {
+    double low = kLargest, high = -kLargest;
+    for (const float c : *of)
+      if (is_finite_float(c)) {
+        low = std::min(low, double{c});
+        high = std::max(high, double{c});
+      }
+    size[axis++] = std::max(high - low, 0.);
+  }
+  const double area = size[0] * size[1] + size[1] * size[2] + size[2] * size[0];
+  const double along = (size[0] + size[1] + size[2]) / double(mesh.vertex_count());
+  return area > 0 ? kShare * std::sqrt(area / double(mesh.vertex_count()))
+                  : (along > 0 ? kShare * along : 1);
+}
+
+/// Draws vertices as balls.
+void SceneBuilder::points(const Mesh& mesh, std::uint32_t material) {
+  const float asked = file_.frame.length(*options_.point_radius);
+  const float radius = asked > 0 ? asked : float(radius_for(mesh));
+  const auto materials = materials_of(mesh, mesh.vertex_count(), material);
+  for (std::size_t i = 0; i < mesh.vertex_count(); ++i)
+    sphere({mesh.x[i], mesh.y[i], mesh.z[i]}, radius, materials.empty() ? material : materials[i]);
+}
+
 CrossedFaces SceneBuilder::mesh(Mesh mesh, std::uint32_t material) {
+  file_.colors.of_faces |= mesh.colors_of_faces;
+  file_.colors.of_vertices |= !mesh.colors_of_faces && !mesh.red.empty();
+  file_.colors.alpha |= mesh.has_alpha;
+  if (mesh.face_count() == 0 && options_.point_radius) {
+    points(mesh, material);
+    return {};
+  }
   Triangles& t = file_.scene.geometry.triangles;
   const auto first_vertex = std::uint32_t(t.vertex_count()),
              first_triangle = std::uint32_t(t.size());
@@ -141,11 +182,10 @@ CrossedFaces SceneBuilder::mesh(Mesh mesh, std::uint32_t material) {
     bad[i] = true;
     mesh.x[i] = mesh.y[i] = mesh.z[i] = 0;
   }
-  file_.colors.of_faces |= mesh.colors_of_faces;
-  file_.colors.of_vertices |= !mesh.colors_of_faces && !mesh.red.empty();
-  file_.colors.alpha |= mesh.has_alpha;
+  const bool smooth = options_.smooth_deg > 0 && mesh.nx.empty();
   append_vertices(mesh);
-  const std::vector<std::uint32_t> materials = materials_of(mesh, material);
+  const std::vector<std::uint32_t> materials =
+      materials_of(mesh, mesh.colors_of_faces ? mesh.face_count() : 0, material);
   const std::size_t wanted = t.size() + mesh.face_count();
   // at least twice as much as before: a scene may name thousands of small meshes
   if (wanted > t.a.capacity()) {
@@ -160,6 +200,8 @@ CrossedFaces SceneBuilder::mesh(Mesh mesh, std::uint32_t material) {
     mesh_triangles(mesh.indices, first_vertex, material);
   else
     crossed = mesh_faces(mesh, bad, first_vertex, material, materials);
+  if (smooth)
+    smooth_normals(t, first_triangle, options_.smooth_deg);
   const auto count = std::uint32_t(t.size()) - first_triangle;
   if (count > 0)
     file_.scene.geometry.objects.push_back({first_triangle, count});

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -86,10 +87,19 @@ struct SceneFile {
 /// Called with one line per warning, `file:line:column: warning: ...`.
 using Warn = std::function<void(const std::string&)>;
 
+/// What is made of meshes.
+struct MeshOptions {
+  bool colors = true;  ///< are read
+  /// of balls in place of vertices, where there are no faces, in the file's units; 0: such that
+  /// they touch; absent: none
+  std::optional<double> point_radius{};
+  double smooth_deg = 0;  ///< of smooth_normals(), where no vertex has a normal; 0: none
+};
+
 struct ReadOptions {
   bool allow_outside = false;  ///< a scene may name files outside its own folder
-  bool colors = true;          ///< of meshes are read
-  Frame frame{};               ///< to read it in
+  MeshOptions meshes{};
+  Frame frame{};  ///< to read it in
   /// Receives the share done, 0 to 1, never less than before. If it returns false, reading throws
   /// Stopped.
   std::function<bool(double)> progress{};

@@ -129,16 +129,19 @@ class Scene:
         return Surfaces(*self._core.surfaces(origins, directions, threads))
 
 
-def read(path, *, colors=True, material=None, threads=0):
+def read(path, *, colors=True, points=None, smooth=None, material=None, threads=0):
     """Reads an NFF, P3F or PLY file, each also gzipped: a Scene.
 
     colors     False leaves out those of meshes
+    points     the vertices of a mesh without faces become spheres of this radius; "auto": of one
+               that leaves few gaps
+    smooth     degrees, up to 180: meshes without normals get some, but for edges that turn by more
     material   of a PLY file, as of Scene
 
     Its warnings are UserWarnings. Raises OSError for what cannot be read, ValueError with file,
     line and column for what is no scene.
     """
-    return Scene._of(_grelha.scene_of_file(path, bool(colors), material, threads))
+    return Scene._of(_grelha.scene_of_file(path, bool(colors), points, smooth, material, threads))
 
 
 def write_image(path, image, *, srgb=False):

@@ -96,7 +96,10 @@ FileScene FileScene::of(SceneFile file, bool in_double, int threads) {
   return scene;
 }
 
-FileScene FileScene::read(py::handle path, bool colors, py::handle material, int threads) {
+FileScene FileScene::read(py::handle path,
+                          const MeshOptions& meshes,
+                          py::handle material,
+                          int threads) {
   const std::string name = path_in(path);
   py::module_::import("os").attr("stat")(path);  // its errors are the ones that Python knows
   SceneFile file;
@@ -104,7 +107,7 @@ FileScene FileScene::read(py::handle path, bool colors, py::handle material, int
   hear_signals([&](const Progress& progress) {
     ReadOptions options;
     options.progress = progress;
-    options.colors = colors;
+    options.meshes = meshes;
     const Warn keep = [&](const std::string& line) { warnings.push_back(line); };
     file = read_scene(name, keep, options);
   });

@@ -23,7 +23,10 @@ struct RenderArguments {
 class FileScene {
  public:
   /// Reads a file. Its warnings are Python's.
-  static FileScene read(py::handle path, bool colors, py::handle material, int threads);
+  static FileScene read(py::handle path,
+                        const MeshOptions& meshes,
+                        py::handle material,
+                        int threads);
   /// A mesh as the program shows a bare PLY: its own view, three lights, light grey.
   static FileScene of_mesh(
       py::handle vertices, py::handle faces, py::handle colors, py::handle material, int threads);

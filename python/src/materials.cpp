@@ -58,6 +58,23 @@ float at_least_0(py::handle given, const std::string& name) {
 
 }  // namespace
 
+MeshOptions meshes_in(bool colors, py::handle points, py::handle smooth) {
+  MeshOptions meshes{.colors = colors};
+  if (py::isinstance<py::str>(points) && points.equal(py::str("auto"))) {
+    meshes.point_radius = 0;
+  } else if (!points.is_none()) {
+    meshes.point_radius = number_in(points, "points");
+    if (!(*meshes.point_radius > 0 && *meshes.point_radius <= kLargest))
+      wrong_value("points", "\"auto\" or a radius above 0", std::to_string(*meshes.point_radius));
+  }
+  if (!smooth.is_none()) {
+    meshes.smooth_deg = number_in(smooth, "smooth");
+    if (!(meshes.smooth_deg > 0 && meshes.smooth_deg <= 180))
+      wrong_value("smooth", "degrees above 0, at most 180", std::to_string(meshes.smooth_deg));
+  }
+  return meshes;
+}
+
 void put_material(py::handle given, std::vector<Material>& materials) {
   if (!py::isinstance<py::dict>(given))
     wrong_type("material", "a dict", given);

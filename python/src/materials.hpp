@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "grelha/geometry.hpp"
+#include "frontend/scene/scene_file.hpp"
 #include "src/arrays.hpp"
 
 namespace grelha::python {
@@ -15,6 +15,9 @@ Float3 color_of(const std::array<double, 3>& color, const char* name);
 /// Gives the vertices colours (vertices, 3): bytes are sRGB, other numbers light from 0 to 1.
 /// Throws TypeError or ValueError.
 void put_colors(py::handle given, Triangles& triangles);
+
+/// What read() makes of meshes: `points` is a radius, "auto" or None, `smooth` degrees or None.
+MeshOptions meshes_in(bool colors, py::handle points, py::handle smooth);
 
 /// Changes the materials of a mesh by a dict of their fields. Those of faces with colours keep
 /// their diffuse. Throws TypeError or ValueError that names the field.

@@ -5,6 +5,7 @@
 #include "src/core_class.hpp"
 #include "src/file_scene.hpp"
 #include "src/hear.hpp"
+#include "src/materials.hpp"
 
 namespace grelha::python {
 namespace {
@@ -36,8 +37,14 @@ void define_scene(py::module_& module) {
                return FileScene::of_mesh(vertices, faces, colors, material, threads_in(threads));
              });
   module.def("scene_of_file",
-             [](py::handle path, bool colors, py::handle material, py::handle threads) {
-               return FileScene::read(path, colors, material, threads_in(threads));
+             [](py::handle path,
+                bool colors,
+                py::handle points,
+                py::handle smooth,
+                py::handle material,
+                py::handle threads) {
+               return FileScene::read(
+                   path, meshes_in(colors, points, smooth), material, threads_in(threads));
              });
   module.def("scene_of", &FileScene::of_state);
   py::class_<FileScene> scene(module, "SceneCore");

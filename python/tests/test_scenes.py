@@ -241,6 +241,27 @@ class Pictures(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "material: expected a mesh"):
             grelha.read(DATA / "balls.nff", material={})
 
+    def test_points_and_smooth_normals(self):
+        vertices, faces = ball(12)
+        with tempfile.TemporaryDirectory() as folder:
+            cloud, mesh = (os.path.join(folder, name) for name in ("cloud.ply", "mesh.ply"))
+            pathlib.Path(cloud).write_text(ply(vertices, []))
+            pathlib.Path(mesh).write_text(ply(vertices, faces))
+            self.assertIn("empty", str(grelha.read(cloud)))
+            balls = grelha.read(cloud, points=0.125).world
+            self.assertIn(f"{len(vertices)} spheres", str(balls))
+            self.assertAlmostEqual(balls.closest((0, 0, 3), (0, 0, -1)).t, 2 - 0.125, 6)
+            self.assertGreater(grelha.read(cloud, points="auto").render(24, 24).std(), 0.05)
+            flat, round_ = grelha.read(mesh), grelha.read(mesh, smooth=60)
+            rays_ = flat.camera_rays(40, 40)
+            seen = [s.surfaces(*rays_) for s in (flat, round_)]
+            there = seen[0].id >= 0
+            off = [np.linalg.norm(s.normals - s.points, axis=-1)[there].max() for s in seen]
+            self.assertTrue(off[1] < 0.05 < off[0], off)
+            for name, value in (("points", 0), ("points", "all"), ("smooth", 0), ("smooth", 181)):
+                with self.assertRaisesRegex((ValueError, TypeError), name):
+                    grelha.read(cloud, **{name: value})
+
     def test_lights_and_background(self):
         scene = grelha.read(DATA / "balls.nff")
         picture = scene.render(40, 40, samples=4)

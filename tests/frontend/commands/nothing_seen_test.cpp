@@ -31,8 +31,8 @@ TEST(NothingSeen, NoPrimitives) {
   SceneFile cloud = read_text(kLit).file;
   cloud.points = 3;
   EXPECT_EQ(said(cloud),
-            Lines{"x.nff: warning: 3 points have no faces and will not be drawn: make a mesh of "
-                  "them, or spheres"});
+            Lines{"x.nff: warning: 3 points have no faces and will not be drawn: --points "
+                  "auto draws them as balls"});
 }
 
 TEST(NothingSeen, NoLight) {

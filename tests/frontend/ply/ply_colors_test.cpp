@@ -140,7 +140,8 @@ TEST(ColoursOfFaces, BecomeMaterials) {
   EXPECT_EQ(color(of[1]), (Float3{0, base.y, 0}));
   EXPECT_EQ(of[2], of[0]) << "one material for each colour";
   EXPECT_EQ(of[3], of[0]);
-  EXPECT_FALSE(read_scene(folder.path() / "m.ply", nullptr, {.colors = false}).colors.any());
+  EXPECT_FALSE(
+      read_scene(folder.path() / "m.ply", nullptr, {.meshes = {.colors = false}}).colors.any());
 }
 
 /// Meshes with and without colours, and polygons, in one scene: what has none is white. Where sides

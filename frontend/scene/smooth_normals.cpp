@@ -1,0 +1,143 @@
+#include "frontend/scene/smooth_normals.hpp"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "frontend/scene/double3.hpp"
+#include "kernel/base/sine.hpp"
+
+namespace grelha {
+namespace {
+
+/// Triangles at a vertex beyond which all are smoothed, for each would look at each other.
+constexpr std::size_t kMostAround = 256;
+
+struct Corner {
+  Double3 face;      ///< the triangle's normal, unit
+  Double3 weighted;  ///< by Max's weight of this corner
+};
+
+Double3 point(const Triangles& t, std::uint32_t v) {
+  return {t.x[v], t.y[v], t.z[v]};
+}
+Double3 minus(const Double3& a, const Double3& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+Double3 times(double s, const Double3& a) {
+  return {s * a[0], s * a[1], s * a[2]};
+}
+
+Corner corner_of(const Triangles& t, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+  const Double3 ab = minus(point(t, b), point(t, a)), ac = minus(point(t, c), point(t, a));
+  const Double3 normal = cross(ab, ac);
+  return {times(1 / length(normal), normal), times(1 / (dot(ab, ab) * dot(ac, ac)), normal)};
+}
+
+double least_cosine(double most_deg) {
+  if (most_deg >= 180)
+    return -2;
+  const double radian = 3.14159265358979323846 / 180;
+  return most_deg <= 90 ? sine_cosine(most_deg * radian).cosine
+                        : -sine_cosine((180 - most_deg) * radian).cosine;
+}
+
+class Smoother {
+ public:
+  Smoother(Triangles& triangles, std::uint32_t first, double most_deg)
+      : t_(triangles), first_(first), least_(least_cosine(most_deg)) {
+    for (auto* of : {&t_.nx, &t_.ny, &t_.nz})
+      of->resize(t_.vertex_count());
+  }
+
+  void run() {
+    sort_corners();
+    for (std::size_t v = 0; v + 1 < begin_.size(); ++v)
+      smooth_vertex(std::uint32_t(v), corners_.data() + begin_[v], begin_[v + 1] - begin_[v]);
+  }
+
+ private:
+  std::uint32_t& vertex(std::uint32_t corner) {
+    return (corner % 3 == 0 ? t_.a : corner % 3 == 1 ? t_.b : t_.c)[first_ + corner / 3];
+  }
+
+  /// Lists the corners of each vertex, in their order.
+  void sort_corners() {
+    const auto count = std::uint32_t(3 * (t_.size() - first_));
+    begin_.assign(t_.vertex_count() + 1, 0);
+    for (std::uint32_t k = 0; k < count; ++k)
+      ++begin_[vertex(k) + 1];
+    for (std::size_t v = 1; v < begin_.size(); ++v)
+      begin_[v] += begin_[v - 1];
+    std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
+    corners_.resize(count);
+    for (std::uint32_t k = 0; k < count; ++k)
+      corners_[next[vertex(k)]++] = k;
+  }
+
+  void smooth_vertex(std::uint32_t v, const std::uint32_t* corners, std::size_t count) {
+    around_.clear();
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint32_t k = corners[i], other = k - k % 3;
+      around_.push_back(corner_of(t_, v, vertex(other + (k + 1) % 3), vertex(other + (k + 2) % 3)));
+    }
+    const std::size_t end = t_.vertex_count();
+    Float3 normal;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (i == 0 || count <= kMostAround)
+        normal = mean_around(i);
+      vertex(corners[i]) = with_normal(v, end, normal, i == 0);
+    }
+  }
+
+  Float3 mean_around(std::size_t i) const {
+    Double3 sum{};
+    for (const Corner& other : around_)
+      if (around_.size() > kMostAround || dot(around_[i].face, other.face) >= least_)
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          sum[axis] += other.weighted[axis];
+    const double size = length(sum);
+    return in_floats(size > 0 ? times(1 / size, sum) : around_[i].face);
+  }
+
+  /// Vertex v, or one of its copies from `end` on, whose normal is this.
+  std::uint32_t with_normal(std::uint32_t v, std::size_t end, const Float3& normal, bool first) {
+    const auto has = [&](std::size_t at) {
+      return Float3{t_.nx[at], t_.ny[at], t_.nz[at]} == normal;
+    };
+    if (first)
+      set(v, normal);
+    if (has(v))
+      return v;
+    std::size_t at = end;
+    while (at < t_.vertex_count() && !has(at))
+      ++at;
+    if (at == t_.vertex_count()) {
+      for (auto* of : {&t_.x, &t_.y, &t_.z, &t_.nx, &t_.ny, &t_.nz, &t_.red, &t_.green, &t_.blue})
+        if (!of->empty())
+          of->push_back((*of)[v]);
+      set(at, normal);
+    }
+    return std::uint32_t(at);
+  }
+
+  void set(std::size_t v, const Float3& normal) {
+    t_.nx[v] = normal.x;
+    t_.ny[v] = normal.y;
+    t_.nz[v] = normal.z;
+  }
+
+  Triangles& t_;
+  const std::uint32_t first_;
+  const double least_;
+  std::vector<std::uint32_t> begin_, corners_;
+  std::vector<Corner> around_;
+};
+
+}  // namespace
+
+void smooth_normals(Triangles& triangles, std::uint32_t first, double most_deg) {
+  Smoother(triangles, first, most_deg).run();
+}
+
+}  // namespace grelha
