@@ -282,7 +282,7 @@ void add_traversal(CLI::App& sub, RenderCommand& command) {
 
 void add_render(CLI::App& app, RenderCommand& command) {
   CLI::App& sub = *app.add_subcommand(
-      "render", "Render scenes (.nff, .p3f, .ply, each also .gz; folders of them)");
+      "render", "Render scenes (.nff, .p3f, .ply, .stl, each also .gz; folders)");
   sub.footer(
       "Examples:\n"
       "  grelha render scenes/data/balls.nff -o balls.png --size 800x600\n"

@@ -36,7 +36,7 @@ FolderFiles files_in(const std::string& folder) {
       continue;  // reading a FIFO blocks until a writer comes: it must be named itself
     if (ends_with_any(name, {".nff", ".p3f"}))
       found.scenes.push_back(name);
-    if (ends_with_any(name, {".ply"}))
+    if (ends_with_any(name, {".ply", ".stl"}))
       found.meshes.push_back(name);
   }
   if (error)
@@ -50,7 +50,7 @@ Names files_of(const std::string& folder) {
   auto [scenes, meshes] = files_in(folder);
   Names& files = scenes.empty() ? meshes : scenes;
   if (files.empty())
-    throw FileError(folder, "no .nff, .p3f or .ply file in this folder");
+    throw FileError(folder, "no .nff, .p3f, .ply or .stl file in this folder");
   std::sort(files.begin(), files.end());
   return files;
 }
@@ -93,8 +93,9 @@ std::vector<std::string> left_out(const Names& arguments) {
     std::erase_if(
         meshes, [&](const auto& m) { return std::ranges::find(arguments, m) != arguments.end(); });
     if (!scenes.empty() && !meshes.empty())
-      lines.push_back(folder + ": left out " + std::to_string(meshes.size()) +
-                      " .ply beside scenes, whose parts they may be: name what is a scene itself");
+      lines.push_back(
+          folder + ": left out " + std::to_string(meshes.size()) +
+          " .ply or .stl beside scenes, whose parts they may be: name what is a scene itself");
   }
   return lines;
 }

@@ -9,8 +9,8 @@
 namespace grelha {
 
 /// Lists the files that the arguments name. A file names itself (- is /dev/stdin). A folder names
-/// its .nff and .p3f files or, where it has none, its .ply files (each also .gz), by name. Throws
-/// FileError for a folder that cannot be read or has none.
+/// its .nff and .p3f files or, where it has none, its .ply and .stl files (each also .gz), by name.
+/// Throws FileError for a folder that cannot be read or has none.
 std::vector<std::string> scene_files(const std::vector<std::string>& arguments);
 
 /// A line for each folder where scene_files() leaves out meshes beside scenes.

@@ -71,7 +71,7 @@ std::string_view other_format(std::string_view text) {
       return magic.name;
   text = text.substr(byte_order_mark(text), kLook);
   if (text.starts_with("solid") && has(text, "facet"))
-    return "an STL mesh: convert it to PLY";
+    return "an STL mesh: give it a name ending in .stl";
   const std::string_view first = Words("", text, 0, Comments::kAll).next();
   if (first == "OFF" || first == "NOFF" || first == "COFF")
     return "an OFF mesh: convert it to PLY";

@@ -14,6 +14,7 @@
 #include "frontend/input/default_view.hpp"
 #include "frontend/nff/nff_reader.hpp"
 #include "frontend/ply/ply_reader.hpp"
+#include "frontend/ply/stl_reader.hpp"
 #include "frontend/scene/choose_frame.hpp"
 #include "frontend/scene/scene_builder.hpp"
 #include "frontend/scene/warnings.hpp"
@@ -42,6 +43,10 @@ bool is_ply(const std::string& path, std::string_view bytes) {
   return bytes.starts_with("ply\n") || bytes.starts_with("ply\r");
 }
 
+bool is_stl(const std::string& path) {
+  return extension(path) == ".stl";
+}
+
 SceneFile read_mesh_only(const std::string& path,
                          std::string bytes,
                          const Warn& warn,
@@ -50,10 +55,13 @@ SceneFile read_mesh_only(const std::string& path,
   SceneFile file;
   file.frame = options.frame;
   file.source_bytes = bytes.size();
-  Mesh mesh = read_ply_mesh(path, bytes, warn, &progress, options.frame, options.meshes.colors);
+  const bool stl = !is_ply(path, bytes);
+  Mesh mesh =
+      stl ? read_stl_mesh(path, bytes, warn, &progress, options.frame)
+          : read_ply_mesh(path, bytes, warn, &progress, options.frame, options.meshes.colors);
   std::string().swap(bytes);  // they are as large as the mesh
-  file.counts.ply = mesh.face_count();
-  if (file.counts.ply == 0 && !options.meshes.point_radius)
+  (stl ? file.counts.mesh : file.counts.ply) = mesh.face_count();
+  if (mesh.face_count() == 0 && !options.meshes.point_radius)
     file.points = mesh.vertex_count();
   file.scene.materials.push_back(default_mesh_material(!mesh.red.empty()));
   const CrossedFaces crossed = SceneBuilder(file, options.meshes).mesh(std::move(mesh), 0);
@@ -76,7 +84,8 @@ void warn_of_dropped(const std::string& path, const Dropped& dropped, const Warn
 std::string load_scene(const std::string& path, LoadProgress& progress) {
   std::string bytes =
       load_file(path, &progress, true, [&](std::string_view text, std::size_t fresh) {
-        validate_start(path, is_ply(path, text), text, fresh);
+        if (!is_stl(path))
+          validate_start(path, is_ply(path, text), text, fresh);
       });
   if (bytes.empty())
     throw ParseError(Position{path, 1, 1, 0}, "expected a scene, found an empty file");
@@ -88,8 +97,9 @@ SceneFile parse_scene(const std::string& path,
                       const Warn& warn,
                       const ReadOptions& options,
                       LoadProgress& progress) {
-  return is_ply(path, bytes) ? read_mesh_only(path, std::move(bytes), warn, options, progress)
-                             : read_nff(path, bytes, warn, options, &progress);
+  return is_ply(path, bytes) || is_stl(path)
+             ? read_mesh_only(path, std::move(bytes), warn, options, progress)
+             : read_nff(path, bytes, warn, options, &progress);
 }
 
 /// Reads the scene again in a frame, from the first bytes if the file cannot be read again. The

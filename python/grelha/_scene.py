@@ -130,13 +130,13 @@ class Scene:
 
 
 def read(path, *, colors=True, points=None, smooth=None, material=None, threads=0):
-    """Reads an NFF, P3F or PLY file, each also gzipped: a Scene.
+    """Reads an NFF, P3F, PLY or STL file, each also gzipped: a Scene.
 
     colors     False leaves out those of meshes
     points     the vertices of a mesh without faces become spheres of this radius; "auto": of one
                that leaves few gaps
     smooth     degrees, up to 180: meshes without normals get some, but for edges that turn by more
-    material   of a PLY file, as of Scene
+    material   of a PLY or STL file, as of Scene
 
     Its warnings are UserWarnings. Raises OSError for what cannot be read, ValueError with file,
     line and column for what is no scene.

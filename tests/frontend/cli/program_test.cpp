@@ -81,7 +81,8 @@ TEST_F(Program, StatsTellTheRun) {
 TEST_F(Program, AFolderSaysWhichMeshesItLeavesOut) {
   ASSERT_EQ(run("scene boat -o boat.nff").status, 0);
   const std::string note =
-      ".: left out 1 .ply beside scenes, whose parts they may be: name what is a scene itself\n";
+      ".: left out 1 .ply or .stl beside scenes, whose parts they may be: name what is a scene "
+      "itself\n";
   EXPECT_EQ(run("render . -o {}.pfm --size 4x4").err, note);
   EXPECT_EQ(run("render . -o {}.pfm --size 4x4 --quiet").err, "");
   EXPECT_EQ(run("info .").err, note);
@@ -236,7 +237,8 @@ TEST_F(Program, OneBadSceneDoesNotKeepTheOthers) {
   EXPECT_EQ(outcome.err, "no.nff: error: cannot open: No such file or directory\n");
   EXPECT_EQ(folder_.list(), "ball.nff ball.pfm");
   std::filesystem::create_directory(folder_.path() / "empty");
-  EXPECT_EQ(run("info empty").err, "empty: error: no .nff, .p3f or .ply file in this folder\n");
+  EXPECT_EQ(run("info empty").err,
+            "empty: error: no .nff, .p3f, .ply or .stl file in this folder\n");
   EXPECT_EQ(run("info nothing/").err, "nothing/: error: cannot read: No such file or directory\n");
 }
 

@@ -27,7 +27,7 @@ const std::string kMeshAdvice = ": convert it to PLY";
 const std::vector<Other> kOthers{
     {"STL in words",
      "solid cube\n  facet normal 0 0 1\n    outer loop\n      vertex 0 0 0\n",
-     "an STL mesh" + kMeshAdvice},
+     "an STL mesh: give it a name ending in .stl"},
     {"OBJ", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "a Wavefront OBJ mesh" + kMeshAdvice},
     {"OBJ behind comments",
      "# Blender\n\nmtllib cube.mtl\no Cube\nv 1.0 1.0 -1.0\n",
