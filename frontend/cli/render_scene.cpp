@@ -145,6 +145,7 @@ class SceneRender {
     file_ = load_scene(command_.scene, log_.reporting(), command_.input.read, bars_);
     check_not_read(outputs_of(command_), file_.meshes);
     own_ = view_of(file_);
+    own_.camera = camera_of(file_, command_);
     look(0);
   }
 

@@ -56,12 +56,14 @@ struct Extents {
   Point3 low, high;
 };
 
-Ball ball_around(const std::vector<Point3>& points) {
+/// The middle of a box around points, and the radius of a ball about it.
+MeshExtent extent_of(const std::vector<Point3>& points) {
   const Extents box(points);
-  Ball ball{in_floats(moved(box.low, .5, moved(box.high, -1, box.low))), 0};
+  MeshExtent extent;
+  extent.center = in_floats(moved(box.low, .5, moved(box.high, -1, box.low)));
   for (const Point3& p : points)
-    ball.radius = std::max(ball.radius, length(moved(p, -1, in_double(ball.center))));
-  return ball;
+    extent.radius = std::max(extent.radius, length(moved(p, -1, in_double(extent.center))));
+  return extent;
 }
 
 /// The share of the box's cross-section that the lowest points along an axis span: a mesh stands on
@@ -171,8 +173,12 @@ void add_default_view(SceneFile& file) {
   file.camera.at = in_floats(at);
   file.camera.up = in_floats(axes.high);
   file.camera.angle_deg = kAngleDeg;
-  file.ball = ball_around(points);
-  file.ball.radius += radius;
+  file.extent = extent_of(points);
+  file.extent.radius += radius;
+  file.extent.half_depth = (front - behind) / 2 + radius;
+  for (const Point3& p : points)
+    file.extent.half_width =
+        std::max(file.extent.half_width, std::abs(dot(p, axes.right) - across.middle()) + margin);
   file.scene.lights = lights_around(file.camera);
   file.scene.background = {0.62f, 0.68f, 0.76f};
   if (file.colors.any())  // they are light: this looks the same through the sRGB curve

@@ -1,5 +1,6 @@
 #include "frontend/input/view.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <stdexcept>
@@ -48,8 +49,18 @@ struct CameraAxes {
 
 /// The distance at which a ball fills the picture as a bare mesh does.
 double distance_of(double radius, const Camera& camera) {
-  const double tangent = kFilledByMesh * pixel_size(camera) * camera.height / 2;
+  const double tangent =
+      kFilledByMesh * pixel_size(camera) * std::min(camera.width, camera.height) / 2;
   return radius * std::sqrt(1 + tangent * tangent) / tangent;
+}
+
+/// Steps back with the made-up camera, which shows its mesh in a square, until a narrower picture
+/// shows it as well.
+void fit_width(const MeshExtent& mesh, Camera& camera) {
+  const CameraAxes axes(camera);
+  const double slope = kFilledByMesh * pixel_size(camera) * camera.width / 2;
+  const double distance = std::max(axes.distance, mesh.half_depth + mesh.half_width / slope);
+  camera.eye = in_floats(sum(1, in_double(camera.at), distance, axes.back));
 }
 
 void go_around(const Orbit& by, double distance, Camera& camera) {
@@ -124,7 +135,7 @@ std::vector<std::string> lines_of(const View& view, const Frame& frame) {
 }
 
 View view_of(const SceneFile& file) {
-  return {file.camera, {file.scene.lights, file.scene.background}, file.default_light, file.ball};
+  return {file.camera, {file.scene.lights, file.scene.background}, file.default_light, file.extent};
 }
 
 void apply_view(const View& own, const ViewOptions& options, SceneFile& file) {
@@ -149,14 +160,17 @@ View changed(View view, const ViewOptions& options, const Frame& frame) {
   if (options.orthographic_height)
     camera.orthographic_height = *options.orthographic_height * frame.scale;
   expect_valid(camera);
+  const bool fits = view.extent.radius > 0 && !options.eye && !options.at;
+  if (fits && camera.width < camera.height && camera.orthographic_height == 0)
+    fit_width(view.extent, camera);
   if (options.orbit) {
     double distance = CameraAxes(camera).distance;
-    if (view.ball.radius > 0 && !options.eye && !options.at) {
+    if (fits) {
       Camera wide = camera;  // an orthographic camera stands where another would
       wide.orthographic_height = 0;
-      distance = distance_of(view.ball.radius, wide);
-      camera.eye = camera.eye + (view.ball.center - camera.at);
-      camera.at = view.ball.center;
+      distance = distance_of(view.extent.radius, wide);
+      camera.eye = camera.eye + (view.extent.center - camera.at);
+      camera.at = view.extent.center;
     }
     go_around(*options.orbit, distance, camera);
     expect_valid(camera);

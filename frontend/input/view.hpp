@@ -39,15 +39,15 @@ struct View {
   Camera camera;
   Lighting lighting;
   bool made_up_lights = false;
-  Ball ball;  ///< around a bare mesh, whose camera is made up as well
+  MeshExtent extent;  ///< of a bare mesh, whose camera is made up as well
 };
 
 /// The view of a file.
 View view_of(const SceneFile& file);
 
-/// The view that options make of another one. A bare mesh turns about the middle of its ball, at
-/// the distance where that fits into the picture. Throws std::invalid_argument for a camera that
-/// cannot see.
+/// The view that options make of another one. A bare mesh fits into pictures of any format, and
+/// turns about its middle, at a distance that is the same all around. Throws std::invalid_argument
+/// for a camera that cannot see.
 View changed(View view, const ViewOptions& options, const Frame& frame);
 
 /// Gives a file the view that options make of its own. Throws as changed() does, and for --lights

@@ -56,10 +56,12 @@ struct ColorCounts {
   bool any() const { return of_vertices || of_faces; }
 };
 
-/// A ball about the middle of a box around points.
-struct Ball {
-  Float3 center;
-  double radius = 0;  ///< 0: none
+/// What must be known of a mesh to show it in pictures of any format and from any side.
+struct MeshExtent {
+  Float3 center;      ///< of a box around it
+  double radius = 0;  ///< of a ball about that; 0: no mesh
+  /// around the point that its made-up camera looks at, across the view and along it
+  double half_width = 0, half_depth = 0;
 };
 
 /// A scene file after all checks: everything the kernel needs and what the file said besides.
@@ -81,7 +83,7 @@ struct SceneFile {
   std::uint64_t source_bytes = 0;
   std::vector<std::string> meshes;                     ///< files it named
   bool default_camera = false, default_light = false;  ///< made up, for a bare PLY
-  Ball ball;                                           ///< around a bare mesh
+  MeshExtent extent;                                   ///< of a bare mesh
 };
 
 /// Called with one line per warning, `file:line:column: warning: ...`.

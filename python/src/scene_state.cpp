@@ -64,6 +64,15 @@ py::tuple point(const Float3& p) {
   return py::make_tuple(p.x, p.y, p.z);
 }
 
+std::array<double, 6> extent_state(const MeshExtent& e) {
+  return {e.center.x, e.center.y, e.center.z, e.radius, e.half_width, e.half_depth};
+}
+
+MeshExtent extent_of(const std::array<double, 6>& state) {
+  const auto& [x, y, z, radius, half_width, half_depth] = state;
+  return {{float(x), float(y), float(z)}, radius, half_width, half_depth};
+}
+
 py::tuple tuple_of_camera(const Camera& c) {
   return py::make_tuple(
       point(c.eye), point(c.at), point(c.up), c.angle_deg, c.width, c.height, c.aperture, c.focus);
@@ -96,13 +105,12 @@ Camera camera_of(const py::tuple& state) {
 
 py::tuple FileScene::state() const {
   const Scene& s = model_->scene();
-  return py::make_tuple(
-      state_of(*model_),
-      floats_of(s.materials, kMaterialFloats),
-      floats_of(view_.lighting.lights, kLightFloats),
-      floats_of(std::vector<Float3>{view_.lighting.background}, 3),
-      tuple_of_camera(view_.camera),
-      py::make_tuple(view_.made_up_lights, point(view_.ball.center), view_.ball.radius, samples_));
+  return py::make_tuple(state_of(*model_),
+                        floats_of(s.materials, kMaterialFloats),
+                        floats_of(view_.lighting.lights, kLightFloats),
+                        floats_of(std::vector<Float3>{view_.lighting.background}, 3),
+                        tuple_of_camera(view_.camera),
+                        py::make_tuple(view_.made_up_lights, extent_state(view_.extent), samples_));
 }
 
 FileScene FileScene::of_state(const py::tuple& state) {
@@ -114,12 +122,12 @@ FileScene FileScene::of_state(const py::tuple& state) {
   if (background.size() != 1)
     throw py::value_error("state: expected one background");
   FileScene scene;
-  const auto [made_up, center, radius, samples] =
-      state[5].cast<std::tuple<bool, py::object, double, int>>();
+  const auto [made_up, extent, samples] =
+      state[5].cast<std::tuple<bool, std::array<double, 6>, int>>();
   scene.view_ = {camera_of(state[4].cast<py::tuple>()),
                  {things_of<Light>(state[2], kLightFloats), background[0]},
                  made_up,
-                 {point_of(center), radius}};
+                 extent_of(extent)};
   scene.samples_ = samples;
   if (scene.samples_ < 1 || scene.samples_ > kMostSamples)
     throw py::value_error("state: expected 1 sample or more");

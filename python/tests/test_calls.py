@@ -126,17 +126,19 @@ class Starts(unittest.TestCase):
 
 class Names(unittest.TestCase):
     def test_signatures(self):
-        for owner in (grelha.World, grelha.Scene):
+        for owner, more in ((grelha.World, []), (grelha.Scene, ["colors", "material"])):
             self.assertEqual(list(inspect.signature(owner).parameters),
-                             ["vertices", "faces", "threads"])
+                             ["vertices", "faces", *more, "threads"])
             for name, member in vars(owner).items():
                 if callable(member) and not name.startswith("_"):
                     inspect.signature(member)
         text = str(inspect.signature(grelha.World(CUBE, CUBE_FACES).closest))
         self.assertEqual(text, "(origins, directions, t_min=0.0, t_max=inf, skip=None, *, "
                                "mask=None, threads=0)")
-        self.assertEqual(str(inspect.signature(grelha.read)), "(path, *, threads=0)")
-        self.assertEqual(str(inspect.signature(grelha.write_image)), "(path, image)")
+        self.assertEqual(str(inspect.signature(grelha.read)),
+                         "(path, *, colors=True, points=None, smooth=None, material=None, "
+                         "threads=0)")
+        self.assertEqual(str(inspect.signature(grelha.write_image)), "(path, image, *, srgb=False)")
 
     def test_texts(self):
         self.assertEqual(repr(grelha.World(CUBE, CUBE_FACES)), "<grelha.World: 12 triangles>")

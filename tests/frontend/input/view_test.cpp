@@ -163,29 +163,43 @@ TEST(MadeUpLights, FollowTheCamera) {
   }
 }
 
-/// Seen all around, a bare mesh never leaves the picture.
+/// How far hits reach to the sides and upward, of the half of a picture.
+std::pair<double, double> filled(const World& world, const Camera& c) {
+  double across = 0, upward = 0;
+  std::vector<Ray> rays(std::size_t(c.width));
+  for (int y = 0; y < c.height; ++y) {
+    camera_rays(c, y, rays);
+    for (int x = 0; x < c.width; ++x)
+      if (closest(world, rays[std::size_t(x)])) {
+        across = std::max(across, std::abs(2. * x + 1 - c.width) / c.width);
+        upward = std::max(upward, std::abs(2. * y + 1 - c.height) / c.height);
+      }
+  }
+  return {across, upward};
+}
+
+/// Seen all around and in any format, a bare mesh never leaves the picture.
 TEST(MadeUpCamera, FitsAllAround) {
   for (const std::string& path : meshes()) {
     SceneFile file = read(path);
     const World world(file.scene, {});
-    for (const double elevation : {-110., -50., 0., 40.})
-      for (double azimuth = 0; azimuth < 360; azimuth += 45) {
-        View view = view_of(file);
-        view.camera.width = view.camera.height = 48;
-        ViewOptions options;
-        options.orbit = {azimuth, elevation, 1};
-        const Camera c = changed(view, options, {}).camera;
-        int most = 0;
-        std::vector<Ray> rays(48);
-        for (int y = 0; y < 48; ++y) {
-          camera_rays(c, y, rays);
-          for (int x = 0; x < 48; ++x)
-            if (closest(world, rays[std::size_t(x)]))
-              most = std::max({most, std::abs(2 * x - 47), std::abs(2 * y - 47)});
+    for (const auto& [width, height] : {std::pair{48, 48}, {24, 72}, {80, 40}}) {
+      View view = view_of(file);
+      view.camera.width = width;
+      view.camera.height = height;
+      const auto expect_fit = [&](const ViewOptions& options, double least) {
+        const auto [across, upward] = filled(world, changed(view, options, {}).camera);
+        EXPECT_LE(std::max(across, upward), .95) << path << ' ' << width << 'x' << height;
+        EXPECT_GT(std::max(across, upward), least) << "it is not lost in it either";
+      };
+      expect_fit({}, .5);
+      for (const double elevation : {-110., -50., 0., 40.})
+        for (double azimuth = 0; azimuth < 360; azimuth += 45) {
+          ViewOptions options;
+          options.orbit = {azimuth, elevation, 1};
+          expect_fit(options, .15);
         }
-        EXPECT_LE(most, 45) << path << ' ' << azimuth << ' ' << elevation;
-        EXPECT_GT(most, 12) << "it is not lost in it either";
-      }
+    }
   }
 }
 
