@@ -11,9 +11,6 @@
 namespace grelha {
 namespace {
 
-Double3 sum(double s, const Double3& a, double t, const Double3& b) {
-  return {s * a[0] + t * b[0], s * a[1] + t * b[1], s * a[2] + t * b[2]};
-}
 Double3 unit_vector(const Double3& a) {
   return sum(1 / length(a), a, 0, a);
 }

@@ -20,6 +20,10 @@ inline Float3 in_floats(const Double3& v) {
 inline Double3 difference(const Float3& a, const Float3& b) {
   return {double(a.x) - b.x, double(a.y) - b.y, double(a.z) - b.z};
 }
+/// s a + t b.
+inline Double3 sum(double s, const Double3& a, double t, const Double3& b) {
+  return {s * a[0] + t * b[0], s * a[1] + t * b[1], s * a[2] + t * b[2]};
+}
 inline Double3 cross(const Double3& a, const Double3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }

@@ -21,17 +21,12 @@ struct Corner {
 Double3 point(const Triangles& t, std::uint32_t v) {
   return {t.x[v], t.y[v], t.z[v]};
 }
-Double3 minus(const Double3& a, const Double3& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-Double3 times(double s, const Double3& a) {
-  return {s * a[0], s * a[1], s * a[2]};
-}
-
 Corner corner_of(const Triangles& t, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-  const Double3 ab = minus(point(t, b), point(t, a)), ac = minus(point(t, c), point(t, a));
+  const Double3 ab = sum(1, point(t, b), -1, point(t, a)),
+                ac = sum(1, point(t, c), -1, point(t, a));
   const Double3 normal = cross(ab, ac);
-  return {times(1 / length(normal), normal), times(1 / (dot(ab, ab) * dot(ac, ac)), normal)};
+  return {sum(1 / length(normal), normal, 0, normal),
+          sum(1 / (dot(ab, ab) * dot(ac, ac)), normal, 0, normal)};
 }
 
 double least_cosine(double most_deg) {
@@ -91,13 +86,12 @@ class Smoother {
   }
 
   Float3 mean_around(std::size_t i) const {
-    Double3 sum{};
+    Double3 all{};
     for (const Corner& other : around_)
       if (around_.size() > kMostAround || dot(around_[i].face, other.face) >= least_)
-        for (std::size_t axis = 0; axis < 3; ++axis)
-          sum[axis] += other.weighted[axis];
-    const double size = length(sum);
-    return in_floats(size > 0 ? times(1 / size, sum) : around_[i].face);
+        all = sum(1, all, 1, other.weighted);
+    const double size = length(all);
+    return in_floats(size > 0 ? sum(1 / size, all, 0, all) : around_[i].face);
   }
 
   /// Vertex v, or one of its copies from `end` on, whose normal is this.
