@@ -16,13 +16,13 @@ struct Camera {
   Float3 eye{0, 0, 1}, at, up{0, 1, 0};
   /// full vertical field of view, between the outer edges of the outermost rows
   double angle_deg = 45;
-  /// > 0: orthographic. Rays are parallel and start on the plane across the view at the eye, of
-  /// which the picture shows this height; scene units. The angle is then not read.
-  double orthographic_height = 0;
   int width = 512, height = 512;  ///< pixels, each from 1 to kMostSide; pixels are square
   double aperture = 0;            ///< diameter of a thin lens, scene units; 0: pinhole
   /// distance, along the view, of the plane that is sharp; scene units, > 0
   double focus = 1;
+  /// > 0: orthographic. Rays are parallel and start on the plane across the view at the eye, of
+  /// which the picture shows this height; scene units. The angle is then not read.
+  double orthographic_height = 0;
 };
 
 /// Returns true if rays can be made for this camera: finite numbers, eye != at, up not along the
