@@ -25,6 +25,7 @@ SKIPPED = {  # lines that begin so are not run: why
     "build/fuzz/": "clang's libFuzzer",
     "job=$(sbatch": "needs Slurm; the test farm_script has a stand-in",
     "sbatch ": "needs Slurm; the test farm_script has a stand-in",
+    "ffmpeg ": "needs ffmpeg",
     "mpirun ": "needs MPI; the test ranks has it",
     'eval "$(./run python)"': "minutes: a build",
     "python3 ": "needs the module; its own tests have it",

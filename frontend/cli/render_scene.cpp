@@ -157,7 +157,10 @@ class SceneRender {
       orbit.azimuth_deg += 360. * number / command_.turntable;
       view.orbit = orbit;
     }
+    const int width = file_.camera.width, height = file_.camera.height;
     apply_view(own_, view, file_);
+    file_.camera.width = width;  // whose pixels are the measure of lenses
+    file_.camera.height = height;
   }
 
   /// Applies the effects of the command to the scene, before rendering.

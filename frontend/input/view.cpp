@@ -87,11 +87,11 @@ void expect_valid(const Camera& camera) {
         "and an angle between 0 and 180 degrees");
 }
 
-/// The shortest decimals that read back as the same.
+/// The shortest decimals that read back as the same; 0 of -0.
 template <class Number>
 std::string shortest(Number value) {
   char text[32];
-  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+  return {text, std::to_chars(text, text + sizeof text, value + 0).ptr};
 }
 
 std::string joined(const std::array<std::string, 3>& words, const std::string& between) {

@@ -155,7 +155,7 @@ TEST(Checkpoint, OfImpossibleNumbersIsRefused) {
   job.options.refine.error = 1e-3;
   const World world(job.file.scene, {});
   Refinement good = make_refinement(job.file.camera);
-  int left = 20;
+  int left = 12;
   job.options.progress = [&](double) { return --left > 0; };
   RenderStats stats;
   ASSERT_FALSE(refine(world, job.file.camera, job.options, good, stats));
