@@ -19,7 +19,7 @@ for scene in mount:7 gears:3 boat:10 tree:11; do
   ./run scene "$name" --size "${scene#*:}" -o "$work/$name.nff"
   ./run render "$work/$name.nff" --size 384x384 -o "$out/$name.png"
 done
-./run render "$work/boat.nff" --size 384x384 --error 0.005 -o "$work/fine.png" \
+./run render "$work/boat.nff" --size 384x384 --error 0.001 -o "$work/fine.png" \
   --samples-map "$out/samples-map.png"
 (eval "$(./run python)" && python3 python/recipes/turntable.py -o "$out/turntable.png")
 dot -Tsvg docs/pipeline.dot -o "$out/pipeline.svg"  # Debian: graphviz
