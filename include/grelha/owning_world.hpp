@@ -55,6 +55,13 @@ class OwningWorld {
   /// Builds the grids. Throws what World's constructor throws.
   OwningWorld(OffsetScene scene, const BuildOptions& options)
       : scene_(std::move(scene)), world_(scene_, options) {}
+  /// The same where the triangles of some objects moved since `before`, and nothing else changed:
+  /// World's constructor shares grids of the others. Masks are not taken over.
+  OwningWorld(OffsetScene scene,
+              const BuildOptions& options,
+              const OwningWorld& before,
+              std::span<const Object> moved)
+      : scene_(std::move(scene)), world_(scene_, options, before.world_, moved) {}
 
   /// Replaces the points that scene_of() was given, by as many: the same as building a new World,
   /// bit for bit. Doubles have the offset subtracted, which stays as it is; floats count from it.

@@ -61,6 +61,14 @@ class World {
   /// length, an index is out of range, or the scene is smaller than kLeastScene. Throws TooLarge
   /// and Stopped as BuildOptions describe.
   World(const SceneSpans& scene, const BuildOptions& options);
+  /// The same where the triangles of some objects moved since `before`, and nothing else changed:
+  /// `moved` names their ranges. Grids over other objects are shared with `before`, not built, if
+  /// they would have the same cells: mostly while the box around the scene stays as it is. Each of
+  /// the two may outlive the other.
+  World(const SceneSpans& scene,
+        const BuildOptions& options,
+        const World& before,
+        std::span<const Object> moved);
   ~World();
   /// Estimates the memory that building takes, within a fifth (docs/performance.md), in about a
   /// tenth of the building time.
@@ -73,9 +81,8 @@ class World {
   /// leaves the World as it was.
   void update(const SceneSpans& scene, const BuildOptions& options);
 
-  /// The same where the triangles of some objects moved, and nothing else changed: `moved` names
-  /// their ranges. Grids over other objects are shared with the World before, not built, if they
-  /// would have the same cells: mostly while the box around the scene stays as it is.
+  /// The same where the triangles of some objects moved, and nothing else changed: it keeps the
+  /// grids that the constructor would share.
   void update(const SceneSpans& scene, const BuildOptions& options, std::span<const Object> moved);
 
   /// Returns the size of each grid: one for the loose primitives and one for each larger object.

@@ -216,6 +216,11 @@ BuildMemory World::estimate(const SceneSpans& scene, const BuildOptions& options
 
 World::World(const SceneSpans& scene, const BuildOptions& options)
     : impl_((check(options), std::make_unique<Impl>(scene, options))) {}
+World::World(const SceneSpans& scene,
+             const BuildOptions& options,
+             const World& before,
+             std::span<const Object> moved)
+    : impl_((check(options), std::make_unique<Impl>(scene, options, before.impl_.get(), moved))) {}
 World::~World() = default;
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
@@ -227,8 +232,7 @@ void World::update(const SceneSpans& scene, const BuildOptions& options) {
 void World::update(const SceneSpans& scene,
                    const BuildOptions& options,
                    std::span<const Object> moved) {
-  check(options);
-  impl_ = std::make_unique<Impl>(scene, options, impl_.get(), moved);
+  *this = World(scene, options, *this, moved);
 }
 
 std::vector<GridStats> World::grids() const {

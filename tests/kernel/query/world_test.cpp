@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <memory>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -269,6 +270,26 @@ TEST(Update, OfOneObjectBuildsItsGridAlone) {
     shared += kept;
   }
   EXPECT_GT(shared, 60u);
+}
+
+/// The World before goes on answering for its own arrays, and may go.
+TEST(Update, IntoAnotherWorldSharesGridsWithOneThatMayGo) {
+  const Scene before = meshes_in_a_box();
+  Scene after = before;
+  const Object moved = before.geometry.objects[2];
+  for (std::uint32_t v = 3 * moved.first_triangle;
+       v < 3 * (moved.first_triangle + moved.triangle_count);
+       ++v)
+    after.geometry.triangles.y[v] += .1f;
+  auto first = std::make_unique<World>(before, BuildOptions{});
+  const World second(after, {}, *first, {&moved, 1});
+  EXPECT_TRUE(same_grids(*first, World(before, {})));
+  std::size_t kept = 0;
+  for (int i = 0; i < second.impl().view.grid_count; ++i)
+    kept += stores(*first)[i] == stores(second)[i];
+  EXPECT_EQ(kept, second.grids().size() - 1);
+  first.reset();
+  EXPECT_TRUE(same_grids(second, World(after, {})));
 }
 
 TEST(Update, OfObjectsBuildsAllWhereIdsChange) {
