@@ -1,5 +1,5 @@
 from os import PathLike
-from typing import Any, Literal, NamedTuple, Sequence, TypedDict, Union
+from typing import Any, Iterable, Literal, NamedTuple, Sequence, TypedDict, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -65,6 +65,12 @@ class World:
     def spheres(centers: ArrayLike, radii: ArrayLike, *, threads: int = ...) -> World: ...
     def update(self, vertices: ArrayLike, radii: ArrayLike | None = ..., *,
                threads: int = ...) -> None: ...
+    @staticmethod
+    def of(meshes: Iterable[Any], *, threads: int = ...) -> World: ...
+    def update_mesh(self, mesh: int, vertices: ArrayLike, *, threads: int = ...) -> None: ...
+    @property
+    def meshes(self) -> int: ...
+    def mesh_of(self, ids: ArrayLike) -> tuple[Any, Any]: ...
     @property
     def masks(self) -> Any: ...  # uint8 or None
     @masks.setter

@@ -1,7 +1,10 @@
 """World: what is asked of triangles and spheres."""
+from collections.abc import Iterable
+
 import numpy as np
 
 from . import _grelha
+from ._geometry import shown
 
 
 def _expect_unmade(thing):
@@ -18,8 +21,21 @@ def _restored(cls, state, masks):
     return cls._of(_grelha.core_of(state), masks)
 
 
+def _arrays_of(mesh, name):
+    """Vertices and faces of a mesh, which form a World."""
+    try:
+        vertices, faces = (mesh.vertices, mesh.faces) if hasattr(mesh, "vertices") else mesh
+    except (AttributeError, TypeError, ValueError):
+        raise TypeError(f"{name}: expected vertices and faces, found {shown(mesh)}") from None
+    try:
+        _grelha.check_mesh(vertices, faces)
+    except (TypeError, ValueError) as error:
+        raise type(error)(f"{name}: {error}") from None
+    return np.asarray(vertices), np.asarray(faces).astype(np.int64)
+
+
 class World:
-    """Triangles, ready for queries. It does not change, but by update() and masks.
+    """Triangles, ready for queries. It does not change, but by update(), update_mesh() and masks.
 
     vertices   (n, 3) numbers. float32 is taken as it is. float64 is rounded to float32 after an
                offset is subtracted: the middle of the bounding box, on a grid of a power of two; 0
@@ -58,6 +74,27 @@ class World:
         """
         return World._of(_grelha.spheres(centers, radii, threads))
 
+    @staticmethod
+    def of(meshes, *, threads=0):
+        """A World of several meshes, of which update_mesh() moves one at a time.
+
+        meshes   a sequence of pairs (vertices, faces), or of things that have .vertices and .faces,
+                 as trimesh and Scene have
+
+        It is the World of their arrays one after the other: ids and masks count the faces of all.
+        mesh_of() tells whose they are. float64 in one makes all float64. Raises as World does, with
+        the number of the mesh.
+        """
+        if not isinstance(meshes, Iterable):
+            raise TypeError(f"meshes: expected a sequence of meshes, found {shown(meshes)}")
+        pairs = [_arrays_of(mesh, f"mesh {i}") for i, mesh in enumerate(meshes)]
+        counts = np.array([(len(v), len(f)) for v, f in pairs], np.int64).reshape(-1, 2)
+        firsts = np.cumsum(counts[:, 0]) - counts[:, 0]
+        vertices = [np.zeros((0, 3), np.float32), *(v for v, _ in pairs)]
+        faces = [np.zeros((0, 3), np.int64), *(f + k for (_, f), k in zip(pairs, firsts))]
+        return World._of(_grelha.meshes(np.concatenate(vertices), np.concatenate(faces), counts,
+                                        threads))
+
     def __getattr__(self, name):  # only what is not there
         if name in ("_core", "_masks"):
             raise TypeError("World: __init__() was not called")
@@ -72,7 +109,8 @@ class World:
     def update(self, vertices, radii=None, *, threads=0):
         """Moves the vertices and builds anew.
 
-        vertices   as many as before, (n, 3); the faces stay. Of a World of spheres the centers.
+        vertices   as many as before, (n, 3); the faces stay. Of a World of spheres the centers, of
+                   several meshes the vertices of all.
         radii      of spheres, (n,) or one for all; None: as before
         threads    to build with; 0: one for each processor
 
@@ -80,6 +118,36 @@ class World:
         or ValueError, and then nothing has changed.
         """
         self._core = self._core.moved(vertices, radii, threads)
+
+    def update_mesh(self, mesh, vertices, *, threads=0):
+        """Moves the vertices of one mesh: those of the others stay, and mostly their grids too.
+
+        mesh       its number among those that of() was given
+        vertices   as many as the mesh had before, (n, 3)
+        threads    to build with; 0: one for each processor
+
+        The offset stays: it is subtracted from float32 and float64 alike, and update() of all
+        vertices chooses another. Where a new World would have this offset too, answers have its
+        bits. Calls that run in other threads meanwhile answer for the vertices before; of two
+        updates at once one is lost. Raises TypeError or ValueError, and then nothing has changed.
+        """
+        self._core = self._core.mesh_moved(mesh, vertices, threads)
+
+    @property
+    def meshes(self):
+        """The number of meshes that of() was given; 1 in other Worlds."""
+        return self._core.meshes()
+
+    def mesh_of(self, ids):
+        """The meshes that faces belong to, by the ids that queries give.
+
+        ids   whole numbers, (...); -1 for none
+
+        Returns (mesh, face), int64 arrays of shape (...), ints for one id: the number of the mesh
+        among those that of() was given, and the row of its own faces. Both are -1 for -1 and for
+        what is no triangle. Raises ValueError for ids that are none.
+        """
+        return self._core.mesh_of(ids)
 
     @property
     def vertices(self):

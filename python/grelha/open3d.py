@@ -187,27 +187,20 @@ class RaycastingScene:
 
     def _commit(self):
         if self._world is None:
-            vertices = [v for v, _ in self._meshes] or [np.zeros((0, 3), np.float32)]
-            triangles, first = [np.zeros((0, 3), np.int64)], 0
-            for v, f in self._meshes:
-                triangles.append(f + first)
-                first += len(v)
-            joined, faces = np.concatenate(vertices), np.concatenate(triangles)
-            self._begins = np.cumsum([0] + [len(f) for _, f in self._meshes])
-            self._corners = joined[faces].astype(np.float64)
+            world = World.of(self._meshes, threads=self._threads)
+            self._corners = world.vertices[world.faces].astype(np.float64)
             self._normals = normals(self._corners).astype(np.float32)
-            self._world = World(joined, faces, threads=self._threads)
+            self._world = world
         return self._world
 
     def _described(self, face):
         """Mesh, triangle and normal of faces of the World, -1 for none."""
-        mesh = np.searchsorted(self._begins[1:], face, side="right")
+        mesh, triangle = self._world.mesh_of(face)
         hit = face >= 0
-        first = self._begins[np.where(hit, mesh, 0)]
         normal = np.zeros((*face.shape, 3), np.float32)
         normal[hit] = self._normals[face[hit]]
         return {"geometry_ids": np.where(hit, mesh, self.INVALID_ID).astype(np.uint32),
-                "primitive_ids": np.where(hit, face - first, self.INVALID_ID).astype(np.uint32),
+                "primitive_ids": np.where(hit, triangle, self.INVALID_ID).astype(np.uint32),
                 "primitive_normals": normal}
 
 

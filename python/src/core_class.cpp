@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "src/meshes.hpp"
 #include "src/pickle.hpp"
 #include "src/queries.hpp"
 
@@ -68,6 +69,13 @@ void define_making(py::module_& module, py::class_<Core>& core) {
     const int count = threads_in(threads);
     return Core{built(mesh_parts(vertices, faces), count)};
   });
+  module.def("check_mesh",
+             [](py::handle vertices, py::handle faces) { mesh_parts(vertices, faces); });
+  module.def("meshes",
+             [](py::handle vertices, py::handle faces, py::handle counts, py::handle threads) {
+               const int count = threads_in(threads);
+               return Core{built(joined_parts(vertices, faces, counts), count)};
+             });
   module.def("spheres", [](py::handle centers, py::handle radii, py::handle threads) {
     const int count = threads_in(threads);
     return Core{built(sphere_parts(centers, radii), count)};
@@ -78,6 +86,11 @@ void define_making(py::module_& module, py::class_<Core>& core) {
            [](const Core& self, py::handle vertices, py::handle radii, py::handle threads) {
              const int count = threads_in(threads);
              return Core{built(moved_parts(*self.model, vertices, radii), count)};
+           });
+  core.def("mesh_moved",
+           [](const Core& self, py::handle mesh, py::handle vertices, py::handle threads) {
+             const int count = threads_in(threads);
+             return Core{mesh_moved(*self.model, mesh, vertices, count)};
            });
   core.def("masks_in",
            [](const Core& self, py::handle masks) { return masks_in(masks, *self.model); });
@@ -95,6 +108,8 @@ void define_members(py::class_<Core>& core) {
         *to++ = v;
     return faces;
   });
+  core.def("meshes", [](const Core& self) { return mesh_count(*self.model); });
+  core.def("mesh_of", [](const Core& self, py::handle ids) { return mesh_of(*self.model, ids); });
   core.def("offset", [](const Core& self) { return offset_of(*self.model); });
   core.def("text", [](const Core& self) { return text_of_geometry(*self.model); });
 }

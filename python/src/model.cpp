@@ -1,7 +1,5 @@
 #include "src/model.hpp"
 
-#include <span>
-
 #include "src/hear.hpp"
 
 namespace grelha::python {
@@ -48,14 +46,6 @@ Geometry spheres_in(py::handle given, const Shape& shape) {
       "radii", "numbers above 0 of at most 1e18", [&] { return spheres_of<float>(radii.each); });
 }
 
-/// Shapes at points, which are checked where they are used.
-ModelParts parts_of(const Triples& given, Geometry shapes) {
-  const PointArray& points = given.points();
-  return checked(points.name, "finite numbers of at most 1e18", [&] {
-    return ModelParts{scene_of(points, std::move(shapes)), 1, points.in_double};
-  });
-}
-
 /// Points of shape (n, 3), at most so many.
 Triples rows_in(py::handle given, const char* name, std::size_t most, const char* expected) {
   Triples points(given, name);
@@ -65,19 +55,30 @@ Triples rows_in(py::handle given, const char* name, std::size_t most, const char
     wrong_value(name, expected, std::to_string(points.count()));
   return points;
 }
+
+}  // namespace
+
 Triples vertices_in(py::handle given) {
   return rows_in(given, "vertices", kMostPrimitives + 1, "fewer than 2^32 points");
 }
 
-}  // namespace
+ModelParts parts_of(const Triples& given, Geometry shapes) {
+  const PointArray& points = given.points();
+  return checked(points.name, "finite numbers of at most 1e18", [&] {
+    return ModelParts{scene_of(points, std::move(shapes)), 1, points.in_double};
+  });
+}
 
-SharedModel built(ModelParts parts, int threads) {
+SharedModel built(ModelParts parts,
+                  int threads,
+                  const Model* before,
+                  std::span<const Object> moved) {
   SharedModel model;
   const Geometry& g = parts.scene.geometry;
   const std::size_t n = g.planes.size() + g.spheres.size() + g.triangles.size() + g.cones.size();
   hear_signals(n, [&](const Progress& progress) {
     const BuildOptions options{.threads = threads, .progress = progress};
-    model = std::make_shared<const Model>(std::move(parts), options);
+    model = std::make_shared<const Model>(std::move(parts), options, before, moved);
   });
   return model;
 }
@@ -108,7 +109,10 @@ ModelParts moved_parts(const Model& before, py::handle vertices, py::handle radi
   same.triangles.a = old.triangles.a;
   same.triangles.b = old.triangles.b;
   same.triangles.c = old.triangles.c;
-  return parts_of(points, std::move(same));
+  same.objects = old.objects;
+  ModelParts parts = parts_of(points, std::move(same));
+  parts.first_vertices = before.first_vertices;
+  return parts;
 }
 
 ModelParts sphere_parts(py::handle given, py::handle radii) {

@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "frontend/scene/frame.hpp"
 #include "grelha/owning_world.hpp"
@@ -16,6 +18,8 @@ struct ModelParts {
   OffsetScene scene{};
   double scale = 1;        ///< of the frame in which the scene lies
   bool in_double = false;  ///< points are given back in double
+  /// of each mesh, and the number of vertices: geometry.objects has their faces; empty: one mesh
+  std::vector<std::uint32_t> first_vertices{};
 };
 
 /// Immutable, so queries on several threads may share it.
@@ -23,11 +27,18 @@ struct Model {
   OwningWorld owner;
   Frame frame;  ///< in which the scene lies
   bool in_double;
+  std::vector<std::uint32_t> first_vertices;  ///< see ModelParts
 
-  Model(ModelParts parts, const BuildOptions& options)
-      : owner(std::move(parts.scene), options),
+  /// Shares grids with a model `before`, unless it is null, of which some triangles moved.
+  Model(ModelParts parts,
+        const BuildOptions& options,
+        const Model* before,
+        std::span<const Object> moved)
+      : owner(before ? OwningWorld(std::move(parts.scene), options, before->owner, moved)
+                     : OwningWorld(std::move(parts.scene), options)),
         frame{scene().offset, parts.scale},
-        in_double(parts.in_double) {}
+        in_double(parts.in_double),
+        first_vertices(std::move(parts.first_vertices)) {}
   const World& world() const { return owner.world(); }
   const OffsetScene& scene() const { return owner.scene(); }
   const Geometry& geometry() const { return scene().geometry; }
@@ -41,9 +52,16 @@ struct Model {
 };
 using SharedModel = std::shared_ptr<const Model>;
 
-/// Builds the grids, while signals are heard.
-SharedModel built(ModelParts parts, int threads);
+/// Builds the grids, while signals are heard; those that a Model before has are shared.
+SharedModel built(ModelParts parts,
+                  int threads,
+                  const Model* before = nullptr,
+                  std::span<const Object> moved = {});
 
+/// Vertices of shape (n, 3). Throws TypeError and ValueError.
+Triples vertices_in(py::handle given);
+/// Shapes at points. Throws ValueError for points that no scene can have.
+ModelParts parts_of(const Triples& points, Geometry shapes);
 /// Triangles, not built yet. Throws TypeError and ValueError that name the argument.
 ModelParts mesh_parts(py::handle vertices, py::handle faces);
 /// The same faces with other vertices, as many; or spheres with other centers, as many, and radii.

@@ -56,11 +56,13 @@ py::tuple state_of(const Model& model) {
                         py::array_t<std::uint32_t>(2 * py::ssize_t(objects.size()), ranges),
                         py::make_tuple(offset[0], offset[1], offset[2]),
                         model.frame.scale,
-                        model.in_double);
+                        model.in_double,
+                        py::array_t<std::uint32_t>(py::ssize_t(model.first_vertices.size()),
+                                                   model.first_vertices.data()));
 }
 
 ModelParts parts_of_state(const py::tuple& state) {
-  if (state.size() != 6 || !py::isinstance<py::int_>(state[0]) || state[0].cast<int>() != kVersion)
+  if (state.size() != 7 || !py::isinstance<py::int_>(state[0]) || state[0].cast<int>() != kVersion)
     throw py::value_error("state: expected that of a World of this version of grelha");
   ModelParts parts;
   Geometry& g = parts.scene.geometry;
@@ -86,6 +88,12 @@ ModelParts parts_of_state(const py::tuple& state) {
     parts.scene.offset[a] = offset[a].cast<double>();
   parts.scale = state[4].cast<double>();
   parts.in_double = state[5].cast<bool>();
+  parts.first_vertices = vector_of<std::uint32_t>(state[6]);
+  const std::vector<std::uint32_t>& first = parts.first_vertices;
+  if (!first.empty() &&
+      (first.size() != g.objects.size() + 1 || first.front() != 0 ||
+       first.back() != g.triangles.vertex_count() || !std::is_sorted(first.begin(), first.end())))
+    throw py::value_error("state: expected vertices of each mesh");
   return parts;
 }
 
