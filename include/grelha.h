@@ -181,14 +181,14 @@ typedef struct grelha_ids {
   uint32_t id;  ///< GRELHA_NONE if there are none
 } grelha_ids;
 
-/// What the triangles of a world are as a mesh. Vertices at one place are one vertex, whatever
+/// Properties of a world's triangles as a mesh. Vertices at one place are one vertex, whatever
 /// their indices; triangles with two corners at one place have no edges.
 typedef struct grelha_mesh_check {
   size_t triangles;
   size_t vertices;  ///< places of corners
   size_t edges;
   grelha_edges open;  ///< of an odd number of triangles; none: the mesh is closed
-  /// of an even number of triangles, of which not half go each way; none: the mesh is oriented
+  /// of an even number of triangles that do not go each way by halves; none: the mesh is oriented
   grelha_edges inconsistent;
   grelha_edges nonmanifold;  ///< of more than two triangles
   grelha_ids duplicate;      ///< with the corners of one before, in any order

@@ -1,5 +1,6 @@
 """The faults that plant.py plants, and the tests that notice them."""
 import faults_of_error
 import faults_of_rays
+import faults_of_scans
 
-FAULTS = faults_of_rays.FAULTS + faults_of_error.FAULTS
+FAULTS = faults_of_rays.FAULTS + faults_of_error.FAULTS + faults_of_scans.FAULTS

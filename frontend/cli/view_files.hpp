@@ -14,7 +14,7 @@ void check_sheet(const RenderCommand& command, const Camera& camera);
 /// as many digits as the last; or one sheet of all, row by row, nearly square.
 class ViewFiles {
  public:
-  /// `background`: of what is left of the sheet.
+  /// `background`: colour of the rest of the sheet.
   ViewFiles(const RenderCommand& command, const Float3& background)
       : command_(command), background_(background) {}
   void add(int number, const Image& view, const ImageStyle& style);

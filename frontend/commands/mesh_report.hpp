@@ -1,5 +1,5 @@
 #pragma once
-// What the triangles of a file are as a mesh, for `grelha info`.
+// Tells whether a file's mesh is closed, oriented and manifold, for `grelha info`.
 
 #include <string>
 

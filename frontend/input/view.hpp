@@ -23,7 +23,7 @@ struct Orbit {
 inline constexpr double kMostTurn = 36000;  ///< degrees
 inline constexpr double kLeastZoom = .001, kMostZoom = 1000;
 
-/// What replaces a scene's own view, in the coordinates of its file; absent: as the scene says.
+/// Replacements of a scene's own view, in the coordinates of its file; absent: as the scene says.
 struct ViewOptions {
   using Point = std::optional<std::array<double, 3>>;
   Point eye, at, up;

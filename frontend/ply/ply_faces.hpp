@@ -64,7 +64,7 @@ struct PlyPlan {
   PlyType color_type{};
 };
 
-/// The light of a byte of sRGB, or of what rounds to one.
+/// The light of a byte of sRGB, or of a number that rounds to one.
 float light_of_byte(double byte);
 
 /// The array that receives the numbers of a property, and their transformation.

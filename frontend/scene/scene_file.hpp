@@ -50,13 +50,13 @@ enum class BoxOrder : std::uint8_t {
   kPairs,     ///< xmin xmax ymin ymax zmin zmax
 };
 
-/// Whether meshes have colours, and of what. Alpha is read by nobody.
+/// The kinds of colours that meshes have. Alpha is not used.
 struct ColorCounts {
   bool of_vertices = false, of_faces = false, alpha = false;
   bool any() const { return of_vertices || of_faces; }
 };
 
-/// What must be known of a mesh to show it in pictures of any format and from any side.
+/// Size of a mesh, for pictures of any format and from any side.
 struct MeshExtent {
   Float3 center;      ///< of a box around it
   double radius = 0;  ///< of a ball about that; 0: no mesh
@@ -89,7 +89,7 @@ struct SceneFile {
 /// Called with one line per warning, `file:line:column: warning: ...`.
 using Warn = std::function<void(const std::string&)>;
 
-/// What is made of meshes.
+/// Options of meshes.
 struct MeshOptions {
   bool colors = true;  ///< are read
   /// of balls in place of vertices, where there are no faces, in the file's units; 0: such that

@@ -1,5 +1,5 @@
 #pragma once
-// Whether points lie inside meshes. Thread-safe, as the queries of query.hpp.
+// Tests whether points lie inside meshes. Thread-safe, as the queries of query.hpp.
 
 #include <cstdint>
 #include <span>
@@ -15,7 +15,7 @@ namespace grelha {
 /// one and finds an edge at which the front changes sides. what() says how many, where the first
 /// is, and which rule takes such a mesh.
 struct NotClosed : std::invalid_argument {
-  /// The error of a mesh of which this is the first such edge.
+  /// The error of a mesh; `edge` is the first such edge.
   NotClosed(const std::string& text, const MeshEdge& first)
       : std::invalid_argument(text), edge(first) {}
   MeshEdge edge;  ///< the first

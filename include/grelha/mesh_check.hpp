@@ -1,5 +1,5 @@
 #pragma once
-// What the triangles of a scene are as a mesh: closed, oriented, manifold.
+// Checks whether the triangles of a scene are a closed, oriented, manifold mesh.
 
 #include <cstddef>
 #include <cstdint>
@@ -24,14 +24,14 @@ struct Findings {
   std::vector<Item> first;  ///< at most kMost, by ascending id
 };
 
-/// What check_mesh() finds. Vertices at one place are one vertex, whatever their indices; triangles
-/// with two corners at one place have no edges.
+/// The results of check_mesh(). Vertices at one place are one vertex, whatever their indices;
+/// triangles with two corners at one place have no edges.
 struct MeshCheck {
   std::size_t triangles = 0;
   std::size_t vertices = 0;  ///< places of corners
   std::size_t edges = 0;
   Findings<MeshEdge> open_edges;  ///< of an odd number of triangles
-  /// of an even number of triangles, of which not half go each way
+  /// of an even number of triangles that do not go each way by halves
   Findings<MeshEdge> inconsistent_edges;
   Findings<MeshEdge> nonmanifold_edges;          ///< of more than two triangles
   Findings<std::uint32_t> duplicate_triangles;   ///< with the corners of one before, in any order

@@ -18,7 +18,7 @@ inline xsimd::batch<float, xsimd::neon64> xsimd::kernel::div<xsimd::neon64>(
 
 namespace grelha::GRELHA_ISA {
 
-// What a mask is: a register of lanes, or a number with a bit a lane.
+// A mask is a register of lanes, or a number with a bit a lane.
 #if GRELHA_ISA_NUMBER == 5
 inline unsigned register_bits(uint32x4_t m) {
   return vaddvq_u32(vandq_u32(m, uint32x4_t{1, 2, 4, 8}));

@@ -1,5 +1,5 @@
 #pragma once
-// What is made when it is first asked for.
+// Values that are made when they are first asked for.
 
 #include <mutex>
 #include <optional>
@@ -11,7 +11,7 @@ namespace grelha {
 template <class T>
 class Lazy {
  public:
-  /// Made of what `arguments` returns.
+  /// The value is made of the return value of `arguments`.
   template <class Arguments>
   const T& get(const Arguments& arguments) const {
     std::call_once(once_, [&] { value_.emplace(arguments()); });

@@ -19,9 +19,9 @@ namespace {
 constexpr std::uint32_t kUnseen = ~std::uint32_t{0};
 
 /// One vertex for each place.
-class VertexPlaces {
+class VertexPositions {
  public:
-  explicit VertexPlaces(const TriangleSpans& t) : t_(t), of_(t.vertex_count(), kUnseen) {
+  explicit VertexPositions(const TriangleSpans& t) : t_(t), of_(t.vertex_count(), kUnseen) {
     std::size_t used = 0;
     each_corner([&](std::uint32_t vertex) {
       if (vertex >= of_.size())
@@ -131,9 +131,9 @@ bool is_flat(const float (&corner)[3][3]) {
 class MeshChecker {
  public:
   MeshChecker(const TriangleSpans& t, std::uint32_t first_id)
-      : t_(t), first_id_(first_id), places_(t) {
+      : t_(t), first_id_(first_id), positions_(t) {
     found_.triangles = t.size();
-    found_.vertices = places_.count();
+    found_.vertices = positions_.count();
   }
 
   MeshCheck check() {
@@ -151,8 +151,8 @@ class MeshChecker {
   std::uint32_t vertex(std::size_t i, std::uint32_t k) const {
     return (k == 0 ? t_.a : k == 1 ? t_.b : t_.c)[i];
   }
-  std::uint32_t place(std::size_t i, std::uint32_t k) const { return places_.of(vertex(i, k)); }
-  bool has_three_places(std::size_t i) const {
+  std::uint32_t place(std::size_t i, std::uint32_t k) const { return positions_.of(vertex(i, k)); }
+  bool has_three_positions(std::size_t i) const {
     return place(i, 0) != place(i, 1) && place(i, 1) != place(i, 2) && place(i, 2) != place(i, 0);
   }
 
@@ -167,7 +167,7 @@ class MeshChecker {
         const float at[3] = {t_.x[v], t_.y[v], t_.z[v]};
         std::copy(at, at + 3, corner[k]);
       }
-      if (!has_three_places(i) || is_flat(corner))
+      if (!has_three_positions(i) || is_flat(corner))
         found_.degenerate_triangles.first.push_back(first_id_ + i);
     }
     each_same(items, t_.vertex_count(), [&](std::span<const CornerSet> same) {
@@ -180,7 +180,7 @@ class MeshChecker {
     std::vector<CornerSet> items;
     items.reserve(3 * t_.size());
     for (std::uint32_t i = 0; i < t_.size(); ++i)
-      for (std::uint32_t k = 0; has_three_places(i) && k < 3; ++k) {
+      for (std::uint32_t k = 0; has_three_positions(i) && k < 3; ++k) {
         const auto [low, high] = std::minmax({place(i, k), place(i, (k + 1) % 3)});
         items.push_back({{low, high, 0}, i, k});
       }
@@ -224,7 +224,7 @@ class MeshChecker {
 
   const TriangleSpans& t_;
   const std::uint32_t first_id_;
-  const VertexPlaces places_;
+  const VertexPositions positions_;
   MeshCheck found_;
 };
 

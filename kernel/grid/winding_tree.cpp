@@ -166,13 +166,13 @@ struct Cluster {
   void reach(double distance) { radius = std::max(radius, distance * kRoundedUp); }
 };
 
-struct PlacedTriangle {
+struct OrderedTriangle {
   float at[3];
   std::uint32_t id;
 };
 
-std::vector<PlacedTriangle> ordered(const Triangle::Source& triangles) {
-  std::vector<PlacedTriangle> placed(triangles.size());
+std::vector<OrderedTriangle> ordered(const Triangle::Source& triangles) {
+  std::vector<OrderedTriangle> placed(triangles.size());
   for (std::size_t i = 0; i < placed.size(); ++i) {
     const Triangle::Fields<float> t = triangles[i];
     placed[i].id = static_cast<std::uint32_t>(i);
@@ -187,7 +187,7 @@ std::vector<PlacedTriangle> ordered(const Triangle::Source& triangles) {
 
 /// Unused positions of the last block hold NaN corners.
 void write_block(const Triangle::Source& triangles,
-                 std::span<const PlacedTriangle> of,
+                 std::span<const OrderedTriangle> of,
                  TriangleBlock& block) {
   constexpr float kNoCorner = std::numeric_limits<float>::quiet_NaN();
   for (std::size_t i = 0; i < kBlock; ++i) {
@@ -205,10 +205,10 @@ void write_block(const Triangle::Source& triangles,
   }
 }
 
-Cluster cluster_of(const Triangle::Source& triangles, std::span<const PlacedTriangle> of) {
+Cluster cluster_of(const Triangle::Source& triangles, std::span<const OrderedTriangle> of) {
   Cluster cluster;
   const auto each = [&](const auto& visit) {
-    for (const PlacedTriangle& one : of) {
+    for (const OrderedTriangle& one : of) {
       const Triangle::Fields<float> t = triangles[one.id];
       Corners corner;
       for (int k = 0; k < 3; ++k)
@@ -252,10 +252,10 @@ WindingTree::WindingTree(const TriangleSpans& spans) {
   GeometrySpans geometry;
   geometry.triangles = spans;
   const Triangle::Source triangles(geometry);
-  const std::vector<PlacedTriangle> placed = ordered(triangles);
+  const std::vector<OrderedTriangle> placed = ordered(triangles);
   blocks.resize(rows_of(placed.size()));
   std::vector<Cluster> clusters(blocks.size());
-  each_eight(std::span(placed), [&](std::span<const PlacedTriangle> of, std::size_t i) {
+  each_eight(std::span(placed), [&](std::span<const OrderedTriangle> of, std::size_t i) {
     write_block(triangles, of, blocks[i]);
     clusters[i] = cluster_of(triangles, of);
   });

@@ -164,7 +164,7 @@ void World::Impl::set_materials() {
   shading.glossy = materials.glossy;
 }
 
-/// A grid of the same layout over the same primitives, none of which moved; or null.
+/// A grid of the same layout over the same primitives, if they did not move; or null.
 std::shared_ptr<const BuiltGrid> World::Impl::find_unmoved(const BuiltGrid& planned,
                                                            std::span<const Object> moved) const {
   const std::uint64_t begin = planned.first_id, end = begin + planned.count;

@@ -19,7 +19,7 @@ namespace grelha {
 class BuildProgress;
 struct Plan;
 
-/// A grid, and the ids of what it was built over where these follow each other; else `count` is 0.
+/// A grid, and the range of its primitives' ids; `count` is 0 if they are no range.
 struct BuiltGrid {
   Grid grid;
   std::uint32_t first_id = 0, count = 0;

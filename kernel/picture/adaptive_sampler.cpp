@@ -136,7 +136,7 @@ class AdaptiveSampler {
            errors_.totals().judged(r_.checks > 0) <= options_.refine.error;
   }
 
-  /// Checks the picture's error. What earlier checks found counts for half.
+  /// Checks the picture's error. Sums of earlier checks count for half.
   void check() {
     const RayCounts before = stats_.rays;
     r_.checked = .5 * r_.checked + check_error(world_, setup_, options_, errors_, r_, stats_);

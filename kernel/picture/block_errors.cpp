@@ -221,7 +221,7 @@ BlockErrors::Totals BlockErrors::totals() const {
   return {sum, std::sqrt(bound / n), std::sqrt(sum / n)};
 }
 
-/// Variance of the sum that checks make of what blocks claim: that of a ratio estimator (Cochran
+/// Variance of the corrected sum of the blocks' claims: that of a ratio estimator (Cochran
 /// 1977, 6.4), and that of the mean where samples agree.
 double BlockErrors::check_spread(double claimed, double agreeing) const {
   const CheckSums& c = r_.checked;

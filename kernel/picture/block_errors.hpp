@@ -21,8 +21,8 @@ class BlockErrors {
     double sum, bound;  ///< sum of the variances of all pixels; bound of the RMSE at 95 %
                         ///< confidence
     double rmse;
-    /// What is held against the error asked for: until a check tells more, blocks are taken to
-    /// claim too much.
+    /// The figure compared with the error asked for. Until a check, blocks are taken to claim too
+    /// much.
     double judged(bool checked) const { return checked ? bound : rmse / kOverclaimed; }
   };
   Totals totals() const;
@@ -78,8 +78,8 @@ class BlockErrors {
   std::vector<std::uint8_t> version_;  ///< [blocks] Refinement::log when `sums_` was set
   std::vector<Sums> sums_;             ///< [blocks]
   Level levels_[kLevels];
-  std::vector<float> claim_, variance_, certainty_,
-      gain_;  ///< [blocks] certainty_: of how many hits
+  std::vector<float> claim_, variance_, gain_;  ///< [blocks]
+  std::vector<float> certainty_;                ///< [blocks] of how many hits
 };
 
 }  // namespace grelha

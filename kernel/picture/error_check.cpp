@@ -14,9 +14,9 @@
 namespace grelha {
 namespace {
 
-/// Pixels that a check samples again: so many tell the error to a few per cent, but of small
-/// pictures no more than an eighth, and of large ones no more than a thirtieth.
+/// Pixels that tell the error to a few per cent, and pixels that are checked of any picture.
 constexpr double kMinChecked = 2048, kFewChecked = 64;
+/// Most that a check samples again: an eighth of a small picture, a thirtieth of a large one.
 constexpr double kMostShare = 1. / 8, kMostOfLarge = 1. / 32;
 /// Blocks that claim most are checked for themselves: few could hold most of an error.
 constexpr std::size_t kWorstChecked = 16;

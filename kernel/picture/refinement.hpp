@@ -21,7 +21,7 @@ static_assert(1 << kMostLog == kMostSamples);
 /// eighths in each pixel.
 inline constexpr int kFirstLog = 3;
 
-/// What checks of a picture's error found: sums over the pixels they sampled again, each times the
+/// Results of checks of a picture's error: sums over the pixels sampled again, each times the
 /// number of pixels it stands for. Half the squared difference of two independent means of n
 /// samples is their squared error, without a model.
 struct CheckSums {
@@ -64,7 +64,7 @@ struct Refinement {
   double round_drop = 0, round_level = 0;  ///< the same of the round in work
   float variance_ratio = .4f;              ///< V(n) / V(n/2)
   float gain_threshold = .25f;      ///< gain a ray that a block of the round in work had to promise
-  CheckSums checked;                ///< what checks found
+  CheckSums checked;                ///< results of checks
   int checks = 0;                   ///< of the picture's error
   std::uint64_t checked_at = 0;     ///< samples there were at the last one
   std::uint64_t check_samples = 0;  ///< taken for checks alone

@@ -26,7 +26,7 @@ using OccludedLoop =
 using ClosestPointsLoop =
     void (*)(const SceneView&, const Float3*, std::size_t count, float radius, ClosestPoint*);
 
-/// What a ray from a point crosses; see contains().
+/// Sums of the crossings of a ray from a point; see contains().
 struct CrossingSum {
   std::int32_t outwards = 0;  ///< triangles, less those that are crossed inwards
   bool in_sphere = false;     ///< the point lies in a sphere
@@ -38,7 +38,7 @@ using CrossingSumLoop = void (*)(const SceneView&, const Float3*, std::size_t co
 /// Winding numbers of [count] points, within `error`.
 using WindingLoop = void (*)(
     const WindingTreeView&, const Float3*, std::size_t count, double error, double* numbers);
-/// Whether winding numbers are beyond 1/2 or -1/2: [count] out, 1 or 0. Numbers that are within
+/// Tests whether winding numbers are beyond 1/2 or -1/2: [count] out, 1 or 0. Numbers within
 /// kLeastWindingError of it decide as they were computed.
 using SortByWindingLoop = void (*)(const WindingTreeView&,
                                    const Float3*,

@@ -132,7 +132,7 @@ inline void winding_numbers(const WindingTreeView& tree,
   }
 }
 
-/// Whether the size of a point's winding number is above 1/2. A coarse one decides for most.
+/// True if the size of a point's winding number is above 1/2. A coarse one decides for most.
 inline bool is_wound_around(const WindingTreeView& tree, const double (&p)[3]) {
   double beyond = 0;
   for (const double allowed : {1., 0x1p-3, 0x1p-7, 0x1p-12, kLeastWindingError}) {

@@ -50,7 +50,7 @@ bool lens_is_valid(const Camera& c) {
 }
 
 bool height_is_valid(const Camera& c) {
-  constexpr double kMostHeight = 1e18;  // of what floats square
+  constexpr double kMostHeight = 1e18;  // floats hold its square
   return c.orthographic_height > 0 && c.orthographic_height <= kMostHeight;
 }
 

@@ -67,7 +67,7 @@ struct LaneCamera {
   store_words(b.path + i, zero);
 }
 
-/// Moves half of the samples into boxes, where their pixels have any, and the others out of them.
+/// Moves half of the samples of pixels with boxes into the boxes, and the other half out.
 /// Returns the weights: twice the area that each half stands for, so that even light stays even.
 [[gnu::always_inline]] inline VFloat move_into_boxes(const VUint& boxes, PairOf<VFloat>& in) {
   const VFloat half(.5f), one(1), two(2), part(1.f / 256);

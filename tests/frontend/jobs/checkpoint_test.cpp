@@ -159,6 +159,7 @@ TEST(Checkpoint, OfImpossibleNumbersIsRefused) {
   job.options.progress = [&](double) { return --left > 0; };
   RenderStats stats;
   ASSERT_FALSE(refine(world, job.file.camera, job.options, good, stats));
+  ASSERT_GE(good.wanted.size(), 2u) << "stop it in a round of several blocks";
   const auto refused = [&](auto change) {
     Refinement bad = good;
     change(bad);
