@@ -2,6 +2,7 @@
 # alone already.
 function(grelha_alone result target folder)
   get_target_property(all ${target} SOURCES)
+  list(FILTER all INCLUDE REGEX "\\.cpp$")
   foreach(source IN LISTS all)
     set(path ${PROJECT_SOURCE_DIR}/${folder}/${source})
     get_source_file_property(options ${path} TARGET_DIRECTORY ${target} COMPILE_OPTIONS)
@@ -16,6 +17,7 @@ endfunction()
 if(GRELHA_UNITY)
   grelha_alone(sources grelha_kernel kernel)
   grelha_alone(sources grelha_frontend frontend)
+  grelha_alone(sources grelha_commands frontend)
   set(scratch ${CMAKE_CURRENT_BINARY_DIR}/alone)
   file(GENERATE OUTPUT ${scratch}/options CONTENT
     "\"-I$<JOIN:$<TARGET_PROPERTY:grelha_frontend,INCLUDE_DIRECTORIES>,\"\n\"-I>\"

@@ -79,6 +79,6 @@ file(COPY ${here}/CMakeLists.txt ${here}/disc_test.cpp DESTINATION ${SCRATCH})
 run("configuring" ${CMAKE_COMMAND} -S ${SCRATCH} -B ${SCRATCH}/build -G ${GENERATOR}
   -D CMAKE_BUILD_TYPE= -D CMAKE_CXX_COMPILER=${COMPILER}
   -D CMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER} "-DCMAKE_CXX_FLAGS=${FLAGS}"
-  -D GRELHA_SIMD=${SIMD} -D GRELHA_ISAS=native -D GRELHA_UNITY=ON)
+  -D GRELHA_SIMD=${SIMD} -D GRELHA_ISAS=all -D GRELHA_UNITY=ON)
 run("building the kernel with discs" ${CMAKE_COMMAND} --build ${SCRATCH}/build --target disc_test)
 run("its test" ${SCRATCH}/build/disc_test)

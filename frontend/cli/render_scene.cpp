@@ -39,22 +39,22 @@ class Stopwatch {
   const Clock::time_point start_ = Clock::now();
 };
 
-/// How a build for one processor gets the other copies of the kernel.
-#ifdef GRELHA_NATIVE
-constexpr const char* kMoreIsas = "; `./run render --isa ...` or cmake -D GRELHA_ISAS=all adds it";
-#else
-constexpr const char* kMoreIsas = "";
-#endif
+/// How a build for one processor, which has no scalar copy, gets the others.
+std::string more_isas(const std::vector<Isa>& isas) {
+  const bool has_all = isas.front().compiled;
+  return has_all ? "" : "; `./run render --isa ...` or cmake -D GRELHA_ISAS=all adds it";
+}
 
 /// Checks the instruction set before the scene is read: a large one takes seconds to read.
 void check_isa(std::string_view name) {
   if (name == "best")
     return;
-  for (const Isa& isa : isas()) {
+  const std::vector<Isa> all = isas();
+  for (const Isa& isa : all) {
     if (isa.name != name)
       continue;
     if (!isa.compiled)
-      throw UsageError("this build has no " + std::string(name) + kMoreIsas);
+      throw UsageError("this build has no " + std::string(name) + more_isas(all));
     if (!isa.is_supported)
       throw UsageError("this processor has no " + std::string(name));
     return;

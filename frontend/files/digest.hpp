@@ -2,16 +2,12 @@
 
 #include <array>
 #include <bit>
-#include <cinttypes>
 #include <cstdint>
-#include <cstdio>
+#include <memory>
 #include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
-
-#define XXH_INLINE_ALL  // the library is a header then, and nothing to install beside the program
-#include <xxhash.h>
 
 namespace grelha {
 
@@ -30,9 +26,10 @@ T swapped_if_big(T v) {
 /// from 0.8 on.
 class Digest {
  public:
-  Digest() { XXH3_128bits_reset(&state_); }
+  Digest();
+  ~Digest();
 
-  void bytes(const void* data, std::size_t size) { XXH3_128bits_update(&state_, data, size); }
+  void bytes(const void* data, std::size_t size);
 
   template <class T>
   void numbers(std::span<const T> values) {
@@ -47,16 +44,12 @@ class Digest {
     }
   }
 
-  std::uint64_t low64() const { return XXH3_128bits_digest(&state_).low64; }
-  std::string hex() const {
-    const XXH128_hash_t h = XXH3_128bits_digest(&state_);
-    char text[33];
-    std::snprintf(text, sizeof text, "%016" PRIx64 "%016" PRIx64, h.high64, h.low64);
-    return text;
-  }
+  std::uint64_t low64() const;
+  std::string hex() const;
 
  private:
-  XXH3_state_t state_;
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace grelha

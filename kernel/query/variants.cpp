@@ -7,15 +7,20 @@ namespace grelha {
 
 // A macro for each copy that the build compiles. __builtin_cpu_supports also asks whether the
 // system saves the wide registers (XGETBV); xsimd 8.1's own query does not.
+namespace {
+[[maybe_unused]] bool always() {
+  return true;
+}
+}  // namespace
+
+#ifdef GRELHA_SCALAR
 namespace scalar {
 extern const VariantLoops kLoops;
 }
 namespace {
-bool always() {
-  return true;
-}
 const Variant kScalar{"scalar", 1, always, scalar::kLoops};
 }  // namespace
+#endif
 
 #ifdef GRELHA_SSE2
 namespace sse2 {
@@ -68,7 +73,9 @@ const Variant kAvx512{"avx512", 16, has_avx512, avx512::kLoops};
 
 namespace {
 constexpr const Variant* kVariants[] = {
+#ifdef GRELHA_SCALAR
     &kScalar,
+#endif
 #ifdef GRELHA_SSE2
     &kSse2,
 #endif
@@ -90,7 +97,7 @@ std::span<const Variant* const> variants() {
 
 const Variant& best_variant() {
   static const Variant* const best = [] {
-    const Variant* widest = &kScalar;
+    const Variant* widest = kVariants[0];  // a build for one processor has no other
     for (const Variant* v : kVariants)
       if (v->is_supported())
         widest = v;

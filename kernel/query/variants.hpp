@@ -90,7 +90,7 @@ struct Variant {
   const VariantLoops& loops;
 };
 
-/// Compiled copies, scalar first, then by growing width.
+/// Compiled copies, by growing width.
 std::span<const Variant* const> variants();
 /// The widest that runs here.
 const Variant& best_variant();
