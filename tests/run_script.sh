@@ -29,7 +29,7 @@ link_tools() {  # link_tools() FOLDER TOOL...: those tools and no others
 # From nothing, with stand-ins for the tools: one line a step; the program alone at first,
 # everything when it is asked for, and from then on.
 mkdir stand-ins
-link_tools stand-ins sh dirname readlink find grep mkdir touch cat date wc tail sed head mv rm
+link_tools stand-ins sh sleep dirname readlink find grep mkdir touch cat date wc tail sed head mv rm
 cat >stand-ins/cmake <<CMAKE
 #!/bin/sh
 echo "cmake \$*" >>$2/asked
@@ -50,6 +50,7 @@ echo "[4/4 12.5 1] two"
 CMAKE
 cat >stand-ins/ctest <<CTEST
 #!/bin/sh
+[ ! -e $2/passing ] || { echo "100% tests passed, 0 tests failed out of 2"; exit; }
 echo "1/2 Test #1: one ....   Passed    0.01 sec"
 echo "2/2 Test #2: two ....***Failed    0.02 sec"
 echo "50% tests passed, 1 tests failed out of 2"
@@ -87,6 +88,21 @@ log=$2/project/build/release/test.log
 try "run: configuring (release)|run: building everything|${failures}why: LastTest.log|$(
   )run: tests failed; all that was said is in $log|" test
 grep -q '^1/2 Test #1: one' "$log" || { echo "the log of tests is incomplete"; exit 1; }
+# What passed is not run again, until a file changes or --again.
+touch passing
+passed='100% tests passed, 0 tests failed out of 2|why: LastTest.log|'
+try "$passed" test -L unit
+try "$passed" test
+said=$(PATH=$2/stand-ins project/run test 2>&1)
+case $said in
+  "run: all tests passed at "*"\`./run test --again\` runs them") ;;
+  *) echo "what passed was run again: $said"; exit 1 ;;
+esac
+try "$passed" test --again
+sleep .01
+touch project/README.md
+try "$passed" test
+rm passing
 # Help and wrong names install and build nothing.
 rm asked
 project/run | grep -q '^  render SCENE' || { echo "no help"; exit 1; }
