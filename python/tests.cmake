@@ -1,6 +1,3 @@
-if(GRELHA_INSTALL AND NOT GRELHA_TESTS)  # else it stands among the tests there
-  include(${PROJECT_SOURCE_DIR}/tests/deb.cmake)
-endif()
 set(environment "PYTHONPATH=${PROJECT_BINARY_DIR}/python" PYTHONDONTWRITEBYTECODE=1)
 if(CMAKE_CXX_FLAGS MATCHES "-fsanitize=address")
   # Python itself is not sanitized: it gets the runtimes first, and its own leaks are not ours

@@ -1,42 +1,97 @@
 #!/bin/sh
-# bare_debian.sh DEB FOLDER [MIRROR]: installs the package in a fresh Debian 12 in FOLDER and uses
-# it: the program, the man page, and the examples built against the library. A python3-grelha that
-# lies beside it is installed too, and its recipes leave pictures in FOLDER/tmp. As root, with
-# debootstrap; not a test of ctest's, for it downloads some hundred megabytes.
+# bare_debian.sh WHAT FOLDER [MIRROR]: what users do first, in a Debian 12 in FOLDER that has
+# nothing else. As root, with debootstrap; not a test of ctest's: it downloads some 200 MB.
+#   commands   both commands of the README in a clone, and the CPU seconds of each step
+#   packages   installs those of build/packages; runs the program, man page, README, recipes, and
+#              the examples against the library; pictures are left in FOLDER/tmp
+#   wheel      pip install ., and grelha-rays, with Debian's packages for building; what it is
+#              linked with
 set -eu
-deb=$1
-root=$2
+what=$1 root=$2
+project=$(cd "$(dirname "$0")/.." && pwd)
 [ -e "$root/etc/debian_version" ] || debootstrap --variant=minbase bookworm "$root" ${3:+"$3"}
 mount -t proc proc "$root/proc"
 trap 'umount "$root/proc"' EXIT
-cp "$deb" "$root/tmp/grelha.deb"
-rm -f "$root/tmp/python3-grelha.deb"
-for python in "$(dirname "$deb")"/python3-grelha_*.deb; do
-  [ ! -e "$python" ] || cp "$python" "$root/tmp/python3-grelha.deb"
+rm -rf "$root/tmp/grelha" "$root/tmp/packages"
+case $what in
+  packages) cp -r "$project/build/packages" "$root/tmp/packages" ;;
+  *) git clone -q --depth 1 "file://$project" "$root/tmp/grelha" ;;
+esac
+{
+  echo 'set -eu; export DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8; cd /tmp'
+  case $what in
+    commands)
+      cat <<'TRY'
+mkdir -p timed
+for tool in apt-get cmake ctest; do
+  cat >timed/$tool <<TIMED
+#!/bin/bash
+TIMEFORMAT="%U %S $tool \$*"
+{ time /usr/bin/$tool "\$@" 2>&3; } 3>&2 2>>/tmp/steps
+TIMED
+  chmod +x timed/$tool
 done
-cat >"$root/tmp/try" <<'TRY'
-set -eux
-export DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8
-cd /tmp
+rm -f steps
+cd grelha
+TIMED='%U %S all of this command, %R s of the clock'
+for command in "render scenes/data/balls.nff -o balls.png" test; do
+  PATH=/tmp/timed:$PATH bash -c "TIMEFORMAT='$TIMED'; time ./run $command"
+done
+echo "CPU seconds, user and system:"
+cut -c1-90 /tmp/steps
+TRY
+      ;;
+    packages)
+      cat <<'TRY'
 apt-get update -qq
-apt-get install -y -qq --reinstall ./grelha.deb
+apt-get install -y -qq --no-install-recommends --reinstall ./packages/*.deb
 grelha --version
 grelha render /usr/share/grelha/scenes/ -o /tmp/ --size 160x120
-if [ -e python3-grelha.deb ]; then
-  apt-get install -y -qq --no-install-recommends --reinstall ./python3-grelha.deb
-  for recipe in /usr/share/doc/python3-grelha/recipes/*.py; do
-    python3 "$recipe" -o "/tmp/$(basename "$recipe" .py).png"
-  done
-fi
-apt-get install -y -qq --no-install-recommends man-db g++ cmake make
+pages=/usr/share/doc/grelha
+for recipe in $pages/python/recipes/*.py; do
+  python3 "$recipe" -o "/tmp/$(basename "$recipe" .py).png"
+done
+sed -n '/^```python$/,/^```$/{/^```/!p}' $pages/README.md >readme.py
+python3 readme.py
+apt-get install -y -qq --no-install-recommends man-db g++ cmake make pkg-config
 man grelha | head -n 24
-rm -rf /tmp/example
-cp -r /usr/share/doc/grelha/examples /tmp/example
-cmake -S /tmp/example -B /tmp/example/build
-cmake --build /tmp/example/build
-/tmp/example/build/embed
-apt-get install -y -qq --no-install-recommends pkg-config
-cc /tmp/example/first_hit.c $(pkg-config --cflags --libs grelha-c) -o /tmp/first_hit
-/tmp/first_hit
+rm -rf example
+cp -r $pages/examples example
+cmake -S example -B example/build
+cmake --build example/build
+example/build/embed
+cc example/first_hit.c $(pkg-config --cflags --libs grelha-c) -o first_hit
+./first_hit
+grep -ohE '\]\([^):# ]+\.[a-z]+' $pages/*.md | cut -c3- | sort -u | while read -r link; do
+  [ -e "$pages/$link" ] || { echo "README.md links to $link"; exit 1; }
+done
+grep -ohE '\]\([^):# ]+\.[a-z]+' $pages/docs/*.md | cut -c3- | sort -u | while read -r link; do
+  [ -e "$pages/docs/$link" ] || { echo "a page links to $link"; exit 1; }
+done
 TRY
+      ;;
+    wheel)
+      cat <<'TRY'
+apt-get update -qq
+apt-get install -y -qq --no-install-recommends g++ cmake ninja-build libxsimd-dev python3-pip \
+  python3-dev python3-numpy python3-skbuild python3-pybind11 pybind11-dev binutils unzip
+cd grelha
+GRELHA_RAYS=1 python3 -m pip wheel -q --no-build-isolation --no-index --no-deps -w /tmp/wheels .
+cd /tmp/wheels
+python3 -m zipfile -e grelha_rays-*.whl rays
+objdump -p rays/grelha/_grelha*.so | grep NEEDED
+PYTHONPATH=rays python3 -c 'import grelha
+world = grelha.World([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+print(world.closest((.2, .2, 1), (0, 0, -1)))'
+apt-get install -y -qq --no-install-recommends libopenexr-dev libcli11-dev nlohmann-json3-dev \
+  libstb-dev libxxhash-dev zlib1g-dev
+cd /tmp/grelha
+python3 -m pip install -q --no-build-isolation --no-index --no-deps --break-system-packages .
+cd /tmp
+sed -n '/^```python$/,/^```$/{/^```/!p}' grelha/README.md >readme.py
+python3 readme.py
+TRY
+      ;;
+  esac
+} >"$root/tmp/try"
 chroot "$root" sh /tmp/try

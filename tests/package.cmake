@@ -16,4 +16,6 @@ add_test(NAME pkg_config COMMAND ${CMAKE_COMMAND} -D BUILD=${PROJECT_BINARY_DIR}
   -D C_COMPILER=${c_compiler} "-DFLAGS=${CMAKE_CXX_FLAGS}"
   -P ${CMAKE_CURRENT_SOURCE_DIR}/pkg_config.cmake)
 set_tests_properties(package pkg_config PROPERTIES LABELS build SKIP_REGULAR_EXPRESSION "SKIPPED: ")
-include(${CMAKE_CURRENT_SOURCE_DIR}/deb.cmake)
+add_test(NAME version COMMAND ${CMAKE_COMMAND} -D ROOT=${PROJECT_SOURCE_DIR}
+  -P ${CMAKE_CURRENT_SOURCE_DIR}/version.cmake)
+set_tests_properties(version PROPERTIES LABELS build)
