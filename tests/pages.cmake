@@ -5,7 +5,8 @@ set_tests_properties(pages PROPERTIES LABELS build)
 
 # The site builds without a warning, and its picture of what includes what is of these sources;
 # without the tools both skip, and say so.
-add_test(NAME docs COMMAND sh ${PROJECT_SOURCE_DIR}/docs/build.sh ${CMAKE_CURRENT_BINARY_DIR}/docs)
+add_test(NAME docs COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/with_python.sh
+  ${PROJECT_SOURCE_DIR}/docs/make_site.py ${CMAKE_CURRENT_BINARY_DIR}/docs)
 add_test(NAME architecture COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/with_python.sh
   ${PROJECT_SOURCE_DIR}/docs/architecture.py --check)
 # Files and symbols that docs and comments name are there. The self test plants some that are not.

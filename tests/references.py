@@ -5,7 +5,7 @@
     references.py --self-test     of planted references, finds the wrong ones and no others
 
 The following count as references:
-  - a link of a page, [words](file);
+  - a link of a page, [words](file), [words](file#heading), [words](#heading);
   - a path that begins with a folder of the project (kernel/grid.hpp), with * or <word> for any
     letters (NAME: none in particular); a bare name of a source (plan.cpp), in pages in backticks;
   - a symbol in a file: `symbol` in `file`, `symbol` of `file`, `one` and `other` (`file`), or a
@@ -33,7 +33,8 @@ NAME = r"[A-Za-z_][\w]*(?:::~?\w+)*"
 FILE = r"(?:[\w.-]+/)*[\w.*<>-]+\.(?:hpp|cpp|py|sh|cmake|md|csv|txt)"
 SYMBOLS = rf"`{NAME}(?:\(\))?`(?:(?:, and|,| and| or) `{NAME}(?:\(\))?`)*"
 LOOKS_LIKE_CODE = r"(?:[A-Za-z]\w*_\w+|[A-Z][a-z]\w*[A-Z]\w*|k[A-Z]\w+)"
-LINK = re.compile(r"\]\(([^)#:\s]+)(?:#[^)]*)?\)")
+LINK = re.compile(r"\]\(([^)#:\s]*)(?:#([^)\s]*))?\)")
+HEADING = re.compile(r"^#+ (.*)", re.M)
 PATH = re.compile(
     rf"(?<![\w/.<-])(?:{'|'.join(FOLDERS)})/(?:[\w.-]+/)*"
     rf"[\w.*<>-]+\.(?:{'|'.join(SOURCES)}|md|csv|txt|html)\b")
@@ -100,6 +101,11 @@ class Tree:
         parts = symbol.removesuffix("()").replace("~", "").split("::")
         return all(part in self.words_of(file) for part in parts)
 
+    def headings_of(self, file):
+        """As links name them."""
+        return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
+                for heading in HEADING.findall((self.root / file).read_text())}
+
     def anywhere(self, symbol):
         sources = [f for f in self.files if mark_of(f) and str(f) not in LEFT_OUT]
         return any(f.stem == symbol or self.holds(f, symbol) for f in sources)
@@ -129,8 +135,11 @@ def complaints_of(tree, file):
             return f"{file}:{start + sum(match.start() >= end for end in ends)}"
 
         for match in LINK.finditer(text) if page else ():
-            if not (tree.root / file.parent / match[1]).exists():
+            target = file.parent / match[1] if match[1] else file
+            if not (tree.root / target).exists():
                 yield f"{at(match)}: no file {match[1]}"
+            elif match[2] and match[2] not in tree.headings_of(target):
+                yield f"{at(match)}: no heading {match[2]} in {target}"
         for match in (*PATH.finditer(text), *(BARE if page else BARE_IN_COMMENT).finditer(text)):
             name = match[match.lastindex or 0]
             if "NAME" not in name and not tree.find(name, file.parent):
@@ -183,7 +192,7 @@ auto url = "http://x";  // see docs/none.md, and tests/plan_test.cpp Plan.HasGri
     ("tests/plan_test.cpp", """TEST(Plan, HasGrids) {}
 """, []),
     ("docs/page.md",
-     """[a link](page.md#part), [one](none.md), [outside](https://x/y.md). `plan.cpp` is there,
+     """[a link](page.md#a-part), [one](none.md), [two](#no-part), [out](https://x/y.md). `plan.cpp` is,
 `plans.cpp` is not, nor is kernel/gone.hpp; `kernel/*.cpp` are.
 
 (`add_grids` in
@@ -196,8 +205,11 @@ auto url = "http://x";  // see docs/none.md, and tests/plan_test.cpp Plan.HasGri
 | `Plan.HasGrids`, `plan_test`: `HasGrids` | `Plan.HasLess`, `plan_test`: `HasMore` |
 
 `kDensity` is; `add_grids` is; `no_such` is not, nor `Plan::none`.
+
+# A part
 """, [
-         "docs/page.md:1: no file none.md", "docs/page.md:2: no file kernel/gone.hpp",
+         "docs/page.md:1: no file none.md", "docs/page.md:1: no heading no-part in docs/page.md",
+         "docs/page.md:2: no file kernel/gone.hpp",
          "docs/page.md:2: no file plans.cpp", "docs/page.md:5: no add_grids in kernel/crowds.cpp",
          "docs/page.md:5: no pad in plan.cpp", "docs/page.md:6: no rows in kernel/plan.cpp",
          "docs/page.md:8: no pad in kernel/plan.cpp",
