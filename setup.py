@@ -1,14 +1,19 @@
-"""What pip builds the package `grelha` by: the Python module of CMakeLists.txt, see python/."""
+"""What pip builds: `grelha`, the Python module of CMakeLists.txt, see python/. With GRELHA_RAYS=1
+in the environment `grelha-rays`: the same module without pictures and files, which needs no
+library but those of the compiler."""
+import os
 import pathlib
 import re
 import sys
 
+import pybind11
 from skbuild import setup
 
 project = pathlib.Path(__file__).with_name("CMakeLists.txt").read_text()
+rays = os.environ.get("GRELHA_RAYS", "0") == "1"
 
 setup(
-    name="grelha",
+    name="grelha-rays" if rays else "grelha",
     version=re.search(r"project\(grelha VERSION (\S+)", project)[1],
     description="Rays through triangles and spheres, from numpy arrays",
     license="MIT",
@@ -20,5 +25,7 @@ setup(
     cmake_install_dir="python",
     cmake_args=["-DCMAKE_BUILD_TYPE=Release", "-DGRELHA_PYTHON=ON", "-DGRELHA_PYTHON_FOLDER=.",
                 "-DGRELHA_TESTS=OFF", "-DGRELHA_PERF=OFF", "-DGRELHA_INSTALL=OFF", "-DGRELHA_C=OFF",
-                f"-DPython_EXECUTABLE={sys.executable}"],
+                f"-DGRELHA_FRONTEND={'OFF' if rays else 'ON'}",
+                f"-DPython_EXECUTABLE={sys.executable}",
+                f"-Dpybind11_DIR={pybind11.get_cmake_dir()}"],
 )
