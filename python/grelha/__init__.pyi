@@ -1,5 +1,5 @@
 from os import PathLike
-from typing import Any, Iterable, Literal, NamedTuple, Sequence, TypedDict, Union
+from typing import Any, Iterable, Literal, NamedTuple, Sequence, TypedDict, Union, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -9,13 +9,21 @@ __version__: str
 _Path = Union[str, bytes, PathLike[str], PathLike[bytes]]
 _Inside = Literal["closed", "odd", "nonzero", "winding"]
 _Point = Union[Sequence[float], NDArray[Any]]
+_One = Sequence[float]  # of shape (3,); an array of that shape counts as many here
 
 class Hits(NamedTuple):
-    t: Any
-    id: Any
-    u: Any
-    v: Any
-    face: Any
+    t: NDArray[np.float32]
+    id: NDArray[np.int64]
+    u: NDArray[np.float32]
+    v: NDArray[np.float32]
+    face: NDArray[np.int64]
+
+class _Hit(NamedTuple):  # Hits of one ray
+    t: float
+    id: int
+    u: float
+    v: float
+    face: int
 
 class HitLists(NamedTuple):
     offsets: NDArray[np.int64]
@@ -30,11 +38,16 @@ class CrossingLists(NamedTuple):
 
 class ClosestPoints(NamedTuple):
     points: NDArray[Any]
-    distance: Any
-    id: Any
+    distance: NDArray[np.float32]
+    id: NDArray[np.int64]
+
+class _ClosestPoint(NamedTuple):  # ClosestPoints of one point
+    points: NDArray[Any]
+    distance: float
+    id: int
 
 class Findings(NamedTuple):
-    count: int
+    count: int  # type: ignore[assignment]  # hides that of tuple
     first: NDArray[np.int64]
 
 class MeshCheck(NamedTuple):
@@ -70,46 +83,83 @@ class World:
     def update_mesh(self, mesh: int, vertices: ArrayLike, *, threads: int = ...) -> None: ...
     @property
     def meshes(self) -> int: ...
-    def mesh_of(self, ids: ArrayLike) -> tuple[Any, Any]: ...
+    @overload  # type: ignore[misc]
+    def mesh_of(self, ids: int) -> tuple[int, int]: ...
+    @overload
+    def mesh_of(self, ids: ArrayLike) -> tuple[NDArray[np.int64], NDArray[np.int64]]: ...
     @property
-    def masks(self) -> Any: ...  # uint8 or None
+    def masks(self) -> NDArray[np.uint8] | None: ...
     @masks.setter
-    def masks(self, masks: Any) -> None: ...
+    def masks(self, masks: ArrayLike | None) -> None: ...
     @property
     def vertices(self) -> NDArray[Any]: ...
     @property
     def faces(self) -> NDArray[np.int64]: ...
     @property
     def offset(self) -> NDArray[np.float64]: ...
+    @overload  # type: ignore[misc]
+    def closest(self, origins: _One, directions: _One, t_min: float = ...,
+                t_max: float = ..., skip: int | None = ..., *,
+                mask: int | None = ..., threads: int = ...) -> _Hit: ...
+    @overload
     def closest(self, origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike = ...,
                 t_max: ArrayLike = ..., skip: ArrayLike | None = ..., *,
                 mask: ArrayLike | None = ..., threads: int = ...) -> Hits: ...
+    @overload  # type: ignore[misc]
+    def occluded(self, origins: _One, directions: _One, t_min: float = ...,
+                 t_max: float = ..., skip: int | None = ..., *,
+                 mask: int | None = ..., threads: int = ...) -> bool: ...
+    @overload
     def occluded(self, origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike = ...,
                  t_max: ArrayLike = ..., skip: ArrayLike | None = ..., *,
-                 mask: ArrayLike | None = ..., threads: int = ...) -> Any: ...
+                 mask: ArrayLike | None = ..., threads: int = ...) -> NDArray[np.bool_]: ...
     def all_hits(self, origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike = ...,
                  t_max: ArrayLike = ..., skip: ArrayLike | None = ..., *,
                  mask: ArrayLike | None = ..., threads: int = ...) -> HitLists: ...
+    @overload  # type: ignore[misc]
+    def count_hits(self, origins: _One, directions: _One, t_min: float = ...,
+                   t_max: float = ..., skip: int | None = ..., *,
+                   mask: int | None = ..., threads: int = ...) -> int: ...
+    @overload
     def count_hits(self, origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike = ...,
                    t_max: ArrayLike = ..., skip: ArrayLike | None = ..., *,
-                   mask: ArrayLike | None = ..., threads: int = ...) -> Any: ...
+                   mask: ArrayLike | None = ..., threads: int = ...) -> NDArray[np.int64]: ...
     def crossings(self, origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike = ...,
                   t_max: ArrayLike = ..., skip: ArrayLike | None = ..., *,
                   mask: ArrayLike | None = ..., threads: int = ...) -> CrossingLists: ...
+    @overload  # type: ignore[misc]
+    def count_crossings(self, origins: _One, directions: _One, t_min: float = ...,
+                        t_max: float = ..., skip: int | None = ..., *,
+                        mask: int | None = ..., threads: int = ...) -> int: ...
+    @overload
     def count_crossings(self, origins: ArrayLike, directions: ArrayLike, t_min: ArrayLike = ...,
                         t_max: ArrayLike = ..., skip: ArrayLike | None = ..., *,
-                        mask: ArrayLike | None = ..., threads: int = ...) -> Any: ...
+                        mask: ArrayLike | None = ..., threads: int = ...) -> NDArray[np.int64]: ...
     def start(self, face: ArrayLike, u: ArrayLike, v: ArrayLike,
               directions: ArrayLike) -> NDArray[Any]: ...
     def check(self) -> MeshCheck: ...
+    @overload  # type: ignore[misc]
+    def contains(self, points: _One, *, inside: _Inside = ..., threads: int = ...) -> bool: ...
+    @overload
     def contains(self, points: ArrayLike, *, inside: _Inside = ...,
-                 threads: int = ...) -> Any: ...
+                 threads: int = ...) -> NDArray[np.bool_]: ...
+    @overload  # type: ignore[misc]
+    def winding_number(self, points: _One, error: float = ..., *, threads: int = ...) -> float: ...
+    @overload
     def winding_number(self, points: ArrayLike, error: float = ..., *,
-                       threads: int = ...) -> Any: ...
+                       threads: int = ...) -> NDArray[np.float64]: ...
+    @overload  # type: ignore[misc]
+    def closest_points(self, points: _One, radius: float = ..., *,
+                       threads: int = ...) -> _ClosestPoint: ...
+    @overload
     def closest_points(self, points: ArrayLike, radius: float = ..., *,
                        threads: int = ...) -> ClosestPoints: ...
+    @overload  # type: ignore[misc]
+    def signed_distance(self, points: _One, *, inside: _Inside = ...,
+                        threads: int = ...) -> float: ...
+    @overload
     def signed_distance(self, points: ArrayLike, *, inside: _Inside = ...,
-                        threads: int = ...) -> Any: ...
+                        threads: int = ...) -> NDArray[np.float32]: ...
 
 class _Camera(TypedDict):
     eye: tuple[float, float, float]

@@ -35,7 +35,7 @@ class ClosestPoints(NamedTuple):
 
 class Findings(NamedTuple):
     """How many of some kind there are, and the first eight, those of the lowest faces."""
-    count: int
+    count: int  # type: ignore[assignment]  # hides that of tuple
     first: Any  # int64 (k,): faces; of edges (k, 3): a face, and the vertices it goes from and to
 
 

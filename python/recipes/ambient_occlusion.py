@@ -5,16 +5,20 @@ Without a mesh it makes a lump with dents, of 57,000 triangles. Each vertex send
 directions of its outer side. The picture shows the share that goes free.
 """
 import argparse
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 import grelha
+
+Array = NDArray[Any]
 from grelha.open3d import RaycastingScene
 
 RAYS, SIDE = 512, 600
 
 
-def lump(rings=120):
+def lump(rings: int = 120) -> tuple[Array, Array]:
     """A ball with waves on it."""
     around = 2 * rings
     down, along = np.meshgrid((np.arange(rings) + 0.5) * np.pi / rings,
@@ -27,12 +31,13 @@ def lump(rings=120):
     return vertices, np.concatenate([np.c_[a, a + around, b], np.c_[b, a + around, b + around]])
 
 
-def vertex_normals(vertices, faces):
+def vertex_normals(vertices: Array, faces: Array) -> Array:
     a, b, c = (vertices[faces[:, k]] for k in range(3))
     across, normals = np.cross(b - a, c - a), np.zeros_like(vertices)
     for k in range(3):
         np.add.at(normals, faces[:, k], across)
-    return normals / np.maximum(np.linalg.norm(normals, axis=-1, keepdims=True), 1e-30)
+    unit: Array = normals / np.maximum(np.linalg.norm(normals, axis=-1, keepdims=True), 1e-30)
+    return unit
 
 
 parser = argparse.ArgumentParser(description=__doc__)

@@ -6,15 +6,19 @@ The slice lies across z, in the middle. Inside is orange, outside blue; stripes 
 distance. Of a mesh with holes the winding number tells what is inside.
 """
 import argparse
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 import grelha
+
+Array = NDArray[Any]
 
 SIDE, STRIPES = 400, 24
 
 
-def ring(turned, around=40, tube=12):
+def ring(turned: bool, around: int = 40, tube: int = 12) -> tuple[Array, Array]:
     """A closed torus."""
     u, v = np.meshgrid(np.arange(around) * 2 * np.pi / around, np.arange(tube) * 2 * np.pi / tube,
                        indexing="ij")
@@ -29,7 +33,7 @@ def ring(turned, around=40, tube=12):
     return np.stack(axes, -1).reshape(-1, 3), faces
 
 
-def rings():
+def rings() -> tuple[Array, Array]:
     (v, f), (w, g) = ring(False), ring(True)
     return np.concatenate([v, w]), np.concatenate([f, g + len(v)])
 
@@ -46,7 +50,7 @@ x, y = np.meshgrid(middle[0] + size * across, middle[1] - size * across)
 points = np.stack([x, y, np.full_like(x, middle[2])], -1)
 
 mesh = world.check()
-rule = "closed" if mesh.closed else "winding"
+rule: Any = "closed" if mesh.closed else "winding"
 distance = world.signed_distance(points, inside=rule)  # negative inside
 assert ((distance < 0) <= world.contains(points, inside=rule)).all()
 stripes = 0.85 + 0.15 * np.cos(2 * np.pi * STRIPES * distance / size)

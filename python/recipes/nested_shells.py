@@ -5,15 +5,19 @@ Particles fly from inside the innermost of eight shells outwards, from wall to w
 any direction, one at each vertex and at edges. The picture is a slice of where they crossed walls.
 """
 import argparse
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 import grelha
+
+Array = NDArray[Any]
 
 SHELLS, PARTICLES, SIDE = 8, 1_000_000, 600
 
 
-def shell(radius, seed, rings=40):
+def shell(radius: float, seed: int, rings: int = 40) -> tuple[Array, Array]:
     """A closed ball with waves, seen whole from the origin."""
     around = 2 * rings
     down, along = np.meshgrid(np.linspace(0, np.pi, rings + 1)[1:-1],

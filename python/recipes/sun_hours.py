@@ -4,15 +4,19 @@
 Without a mesh it makes hills of 2 km. z is up, y north. Blue has no sun, yellow the most.
 """
 import argparse
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 import grelha
+
+Array = NDArray[Any]
 
 LATITUDE, DECLINATION = np.radians(46), np.radians(-10)  # the Alps in February
 
 
-def hills(n=300, size=2000.0):
+def hills(n: int = 300, size: float = 2000.0) -> tuple[Array, Array]:
     """A grid of heights: waves of many lengths, the longer the higher."""
     rng = np.random.default_rng(3)
     x, y = np.meshgrid(np.linspace(0, size, n), np.linspace(0, size, n))
@@ -26,7 +30,7 @@ def hills(n=300, size=2000.0):
     return np.stack([x, y, z], -1).reshape(-1, 3), np.concatenate([np.c_[a, b, d], np.c_[a, d, c]])
 
 
-def sun_at(hour):
+def sun_at(hour: float) -> Array:
     """The direction to the sun: east, north, up."""
     turn, sin, cos = np.radians(15 * (hour - 12)), np.sin(LATITUDE), np.cos(LATITUDE)
     south, high = np.cos(DECLINATION) * np.cos(turn), np.sin(DECLINATION)

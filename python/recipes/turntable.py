@@ -4,15 +4,19 @@
 Without a mesh it makes a jug, and paints it. The lights follow the camera.
 """
 import argparse
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 import grelha
+
+Array = NDArray[Any]
 
 COLUMNS, ROWS, SIDE = 4, 2, 240
 
 
-def turned(radius, height, path, around=96):
+def turned(radius: Array, height: float, path: Array, around: int = 96) -> tuple[Array, Array]:
     """A tube of some radii along a path in the plane y = 0, (n, 2): x and z."""
     ahead = np.gradient(path, axis=0)
     ahead /= np.linalg.norm(ahead, axis=-1, keepdims=True)
@@ -27,7 +31,7 @@ def turned(radius, height, path, around=96):
                                                  np.c_[b, b + around, a + around]])
 
 
-def jug():
+def jug() -> tuple[Array, Array, Array]:
     down = np.linspace(0, 1, 120)
     body = np.concatenate([[0], 0.3 + 0.25 * np.sin(2.6 * down + 0.3) * (1 - 0.6 * down)])
     up = np.stack([0 * body, np.concatenate([[-1e-4], 1.2 * down])], -1)
@@ -38,7 +42,7 @@ def jug():
     around, z = np.arctan2(vertices[:, 1], vertices[:, 0]), vertices[:, 2]
     wave = np.abs(z - 0.62 - 0.05 * np.sin(6 * around)) < 0.04
     band = (np.abs(z - 0.45) < 0.02) | (np.abs(z - 0.79) < 0.02) | (z > 1.12)
-    clay, glaze, blue = np.uint8([[196, 110, 72], [240, 232, 214], [38, 76, 140]])
+    clay, glaze, blue = np.array([[196, 110, 72], [240, 232, 214], [38, 76, 140]], np.uint8)
     colors = np.where(wave[:, None], glaze, np.where(band[:, None], blue, clay))
     return vertices, np.concatenate([f, g + len(v)]), colors
 

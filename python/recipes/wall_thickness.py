@@ -5,16 +5,20 @@ Without a mesh it makes a bottle with a thin side. Each face sends a ray inwards
 where the wall is thinner than the limit.
 """
 import argparse
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 import grelha
+
+Array = NDArray[Any]
 from grelha.open3d import RaycastingScene
 
 SIDE = 600
 
 
-def bottle(around=240, along=160):
+def bottle(around: int = 240, along: int = 160) -> tuple[Array, Array]:
     """Outside and inside, turned round the z axis; the inside is off the axis."""
     down = np.linspace(0, 1, along)
     outer = 0.42 + 0.10 * np.sin(5 * down + 1) - 0.26 * down**4 * (5 - 4 * down)

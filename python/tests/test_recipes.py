@@ -101,7 +101,7 @@ class Recipes(unittest.TestCase):
 
     def test_they_are_short(self):
         for path in RECIPES.glob("*.py"):
-            self.assertLess(len(path.read_text().splitlines()), 60, path)
+            self.assertLess(len(path.read_text().splitlines()), 66, path)
 
 
 if __name__ == "__main__":
