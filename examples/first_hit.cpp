@@ -3,7 +3,6 @@
 
 int main() {
   grelha::Scene scene;
-  scene.materials.resize(1);
   scene.geometry.spheres.add({0, 0, -5}, 1, 0);
   const grelha::World world(scene, {});
   const grelha::Hit hit = grelha::closest(world, {{0, 0, 0}, {0, 0, -1}});

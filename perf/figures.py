@@ -51,6 +51,10 @@ def span(values):
     return f"{min(values):.1f} to {max(values):.1f}"
 
 
+def mean(values):
+    return f"{math.exp(statistics.fmean(map(math.log, values))):.2f}"
+
+
 def ratios(column):
     return [float(r[column]) for r in rows_of("trace") if r[column]]
 
@@ -77,7 +81,8 @@ def figures():
             "ladder": doc_tables.ladder(rows_of("ladder")),
             "build": doc_tables.build(rows_of("build")),
             "embree": span([1 / r for r in ratios("ratio")]), "calls": span(calls),
-            "calls in the mean": f"{math.exp(statistics.fmean(map(math.log, calls))):.2f}"}
+            "calls in the mean": mean(calls), "streams": span(ratios("ratio")),
+            "streams in the mean": mean(ratios("ratio"))}
     told |= lost()
     return told | {f"measured {name}": text for name, text in measured().items()}
 
