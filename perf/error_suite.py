@@ -34,6 +34,7 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
 from bench import DOCS, ROOT, commit, cpu_name, put_section, record, table
+from error_charts import draw_error_charts
 from hostile_scenes import COUNTED, KINDS, VARIANTS, scene
 from image_error import Workshop, read_pfm, rmse, time_to_reach
 
@@ -330,6 +331,7 @@ def main():
                 f"{ROOT.parent}/", "../")
         write_csv(runs, DOCS / "error-suite.csv")
         record("error-suite")
+        draw_error_charts(runs, DOCS / "images/error-suite.svg")
         put_section(DOCS / "sampling.md", "perf/error_suite.py", text)
     sys.exit(not verdict(hostile, ordinary))
 
