@@ -94,4 +94,4 @@ TRY
       ;;
   esac
 } >"$root/tmp/try"
-chroot "$root" sh /tmp/try
+chroot "$root" env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin sh /tmp/try
