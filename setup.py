@@ -10,7 +10,9 @@ import pybind11
 from skbuild import setup
 
 project = pathlib.Path(__file__).with_name("CMakeLists.txt").read_text()
-rays = os.environ.get("GRELHA_RAYS", "0") == "1"
+sdist = pathlib.Path(__file__).with_name("PKG-INFO")  # where pip builds of one, it says which
+rays = (os.environ.get("GRELHA_RAYS", "0") == "1" or
+        sdist.exists() and "Name: grelha-rays\n" in sdist.read_text())
 
 setup(
     name="grelha-rays" if rays else "grelha",
