@@ -4,6 +4,7 @@
 #   commands   both commands of the README in a clone, and the CPU seconds of each step
 #   packages   installs those of build/packages; runs the program, man page, README, recipes, and
 #              the examples against the library; pictures are left in FOLDER/tmp
+#   arm64      packages for ARM, cross-built, and unpacked where qemu-user runs program and module
 #   wheel      pip install ., and grelha-rays, with Debian's packages for building; what it is
 #              linked with
 set -eu
@@ -68,6 +69,27 @@ done
 grep -ohE '\]\([^):# ]+\.[a-z]+' $pages/docs/*.md | cut -c3- | sort -u | while read -r link; do
   [ -e "$pages/docs/$link" ] || { echo "a page links to $link"; exit 1; }
 done
+TRY
+      ;;
+    arm64)
+      cat <<'TRY'
+dpkg --add-architecture arm64
+apt-get update -qq
+apt-get install -y -qq --no-install-recommends dpkg-dev qemu-user crossbuild-essential-arm64
+cd grelha
+apt-get build-dep -y -qq --no-install-recommends -a arm64 ./
+dpkg-buildpackage -b -us -uc -a arm64
+cd ..
+rm -rf arm
+grelha/tests/arm.sh /tmp/arm libgomp1 libopenexr-3-1-30 zlib1g python3 python3-numpy
+for deb in *_arm64.deb grelha-doc_*_all.deb; do dpkg-deb -x "$deb" arm; done
+dpkg-deb -f python3-grelha_*_arm64.deb Depends
+emulated="qemu-aarch64 -L /tmp/arm"
+$emulated arm/usr/bin/grelha render arm/usr/share/grelha/scenes/balls.nff -o arm.png --size 160x120
+sed -n '/^```python$/,/^```$/{/^```/!p}' arm/usr/share/doc/grelha/README.md |
+  sed 's/1_000_000/1_000/; s/512, 512/64, 64/' >readme.py
+PYTHONHOME=/tmp/arm/usr PYTHONPATH=/tmp/arm/usr/lib/python3/dist-packages \
+  $emulated arm/usr/bin/python3.11 readme.py
 TRY
       ;;
     wheel)
