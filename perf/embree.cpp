@@ -42,7 +42,7 @@ using Wide = std::conditional_t<kWidth == 8, RTCRayHit8, RTCRayHit16>;
 
 class Built final : public EmbreeScene {
  public:
-  Built(const Scene& scene, RTCSceneFlags flags, RTCBuildQuality quality)
+  Built(const Scene& scene, RTCSceneFlags flags, RTCBuildQuality quality, bool by_objects = false)
       : device_(rtcNewDevice("threads=1")), quality_(quality) {
     if (!device_)
       throw std::runtime_error("Embree makes no device");
@@ -57,7 +57,9 @@ class Built final : public EmbreeScene {
     const auto triangles = static_cast<std::uint32_t>(g.triangles.size());
     add_planes(g);
     add_spheres(g.spheres, planes);
-    add_triangles(g.triangles, planes + spheres);
+    for (const Object& o :
+         by_objects&& are_all(g) ? g.objects : std::vector<Object>{{0, triangles}})
+      add_triangles(g.triangles, o, planes + spheres);
     add_cones(g.cones, planes + spheres + triangles);
     rtcCommitScene(scene_);
     if (rtcGetDeviceError(device_) != RTC_ERROR_NONE)
@@ -100,23 +102,39 @@ class Built final : public EmbreeScene {
     return a;
   }
 
-  void move(const Scene& scene) override {
-    if (spheres_)
+  void move(const Scene& scene, std::size_t object) override {
+    moved_.clear();
+    if (spheres_ && object == kAll) {
       put_spheres(scene.geometry.spheres, vertices_of(spheres_));
-    if (triangles_)
-      put_vertices(scene.geometry.triangles, vertices_of(triangles_));
+      moved_.push_back(spheres_);
+    }
+    for (std::size_t i = 0; i < meshes_.size(); ++i)
+      if (object == kAll || object == i) {
+        put_vertices(scene.geometry.triangles, meshes_[i], vertices_of(meshes_[i].geometry));
+        moved_.push_back(meshes_[i].geometry);
+      }
   }
 
   void commit() override {
-    for (const RTCGeometry g : {spheres_, triangles_})
-      if (g) {
-        rtcUpdateGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0);
-        rtcCommitGeometry(g);
-      }
+    for (const RTCGeometry g : moved_) {
+      rtcUpdateGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0);
+      rtcCommitGeometry(g);
+    }
     rtcCommitScene(scene_);
   }
 
  private:
+  /// A geometry of triangles, and the range of their vertices.
+  struct Mesh {
+    RTCGeometry geometry;
+    std::uint32_t first, end;
+  };
+  static bool are_all(const Geometry& g) {
+    std::size_t sum = 0;
+    for (const Object& o : g.objects)
+      sum += o.triangle_count;
+    return sum == g.triangles.size();
+  }
   static float* vertices_of(RTCGeometry g) {
     return static_cast<float*>(rtcGetGeometryBufferData(g, RTC_BUFFER_TYPE_VERTEX, 0));
   }
@@ -128,8 +146,8 @@ class Built final : public EmbreeScene {
       *v++ = std::abs(s.radius[i]);
     }
   }
-  static void put_vertices(const Triangles& t, float* v) {
-    for (std::size_t i = 0; i < t.vertex_count(); ++i) {
+  static void put_vertices(const Triangles& t, const Mesh& mesh, float* v) {
+    for (std::size_t i = mesh.first; i < mesh.end; ++i) {
       *v++ = t.x[i];
       *v++ = t.y[i];
       *v++ = t.z[i];
@@ -177,22 +195,29 @@ class Built final : public EmbreeScene {
     spheres_ = g;  // the scene keeps it alive
   }
 
-  void add_triangles(const Triangles& t, std::uint32_t first) {
-    if (t.size() == 0)
+  void add_triangles(const Triangles& t, const Object& o, std::uint32_t first) {
+    if (o.triangle_count == 0)
       return;
+    const std::size_t begin = o.first_triangle, end = begin + o.triangle_count;
     RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    put_vertices(t,
-                 static_cast<float*>(
-                     room(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, 12, t.vertex_count())));
-    auto* index =
-        static_cast<unsigned*>(room(g, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, 12, t.size()));
-    for (std::size_t i = 0; i < t.size(); ++i) {
-      *index++ = t.a[i];
-      *index++ = t.b[i];
-      *index++ = t.c[i];
-    }
-    attach(g, first);
-    triangles_ = g;
+    Mesh mesh{g, ~0u, 0};
+    for (const auto* const corner : {&t.a, &t.b, &t.c})
+      for (std::size_t i = begin; i < end; ++i) {
+        mesh.first = std::min(mesh.first, (*corner)[i]);
+        mesh.end = std::max(mesh.end, (*corner)[i] + 1);
+      }
+    const std::size_t vertices = mesh.end - mesh.first;
+    put_vertices(
+        t,
+        mesh,
+        static_cast<float*>(room(g, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, 12, vertices)));
+    auto* index = static_cast<unsigned*>(
+        room(g, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, 12, o.triangle_count));
+    for (std::size_t i = begin; i < end; ++i)
+      for (const auto* const corner : {&t.a, &t.b, &t.c})
+        *index++ = (*corner)[i] - mesh.first;
+    attach(g, first + o.first_triangle);
+    meshes_.push_back(mesh);
   }
 
   void add_cones(const Cones& c, std::uint32_t first) {
@@ -286,7 +311,9 @@ class Built final : public EmbreeScene {
   RTCDevice device_;
   RTCScene scene_;
   RTCBuildQuality quality_;
-  RTCGeometry spheres_ = nullptr, triangles_ = nullptr;
+  RTCGeometry spheres_ = nullptr;
+  std::vector<Mesh> meshes_;
+  std::vector<RTCGeometry> moved_;
   std::vector<std::uint32_t> first_;  ///< of Grelha's ids, by Embree's geometry
   unsigned plane_geometry_ = RTC_INVALID_GEOMETRY_ID;
   bool any_ = false;
@@ -329,7 +356,7 @@ std::unique_ptr<EmbreeScene> make_moving_embree_scene(const Scene& scene, Moving
       how == MovingScene::kMedium
           ? RTC_SCENE_FLAG_ROBUST
           : static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC);
-  return std::make_unique<Built>(scene, flags, kQuality[static_cast<int>(how)]);
+  return std::make_unique<Built>(scene, flags, kQuality[static_cast<int>(how)], true);
 }
 
 }  // namespace grelha::perf

@@ -30,8 +30,10 @@ class EmbreeScene {
   virtual void trace(const RayBuffer& rays, bool any, const EmbreeMode& mode) = 0;
   /// The last trace's answers with Grelha's ids.
   virtual Answers answers() const = 0;
-  /// Copies moved spheres and vertices of triangles, as many as before.
-  virtual void move(const Scene& scene) = 0;
+  /// Copies moved spheres and vertices of triangles, as many as before; of one object alone, unless
+  /// it is kAll.
+  virtual void move(const Scene& scene, std::size_t object) = 0;
+  static constexpr std::size_t kAll = ~std::size_t{0};
   /// Makes what moved visible to rays.
   virtual void commit() = 0;
 };
@@ -44,7 +46,8 @@ std::vector<EmbreeMode> embree_modes();
 std::unique_ptr<EmbreeScene> make_embree_scene(const Scene& scene, bool robust);
 /// How Embree builds a scene that moves: its quality LOW or MEDIUM, or REFIT.
 enum class MovingScene { kLow, kMedium, kRefit };
-/// Of the flag for robust scenes. Null without Embree.
+/// Of the flag for robust scenes. Objects that have all triangles are geometries of their own. Null
+/// without Embree.
 std::unique_ptr<EmbreeScene> make_moving_embree_scene(const Scene& scene, MovingScene how);
 
 }  // namespace grelha::perf

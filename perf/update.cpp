@@ -1,7 +1,10 @@
-// Scenes whose vertices all move from frame to frame: the time of an update and of 256 x 256 camera
-// rays, beside Embree of quality LOW, MEDIUM and REFIT. One thread; the methods take turns.
+// Scenes whose vertices all move from frame to frame, or those of one mesh of many: the time of an
+// update and of 256 x 256 camera rays, beside Embree of quality LOW, MEDIUM and REFIT. One thread; the methods take turns.
 //
 // update [--scene NAME]... [--frames N]
+//
+// A scene is a file, `GENERATOR SIZE`, `balls`, or `meshes N`: N meshes of 1520 triangles, of which
+// the one in the middle moves alone.
 //
 // Prints a table of Markdown: milliseconds a frame, the median. Grelha: World::update() and one
 // stream of rays. Embree (robust): a commit after the vertices are copied, and its fastest way of
@@ -21,6 +24,7 @@
 #include "perf/timing.hpp"
 #include "perf/workloads.hpp"
 #include "tests/support/random.hpp"
+#include "tests/support/scenes.hpp"
 
 namespace {
 
@@ -57,11 +61,38 @@ SceneFile balls() {
   return file;
 }
 
+/// Bodies side by side, each an object, seen from above.
+SceneFile meshes(int count) {
+  SceneFile file;
+  file.scene.materials.emplace_back();
+  const int side = static_cast<int>(std::ceil(std::sqrt(count)));
+  for (int i = 0; i < count; ++i) {
+    const auto before = file.scene.geometry.triangles.x.size();
+    test::add_object(file.scene, test::ball_mesh(40, 20, .1, static_cast<std::uint64_t>(i)));
+    Triangles& t = file.scene.geometry.triangles;
+    for (std::size_t v = before; v < t.x.size(); ++v) {
+      t.x[v] += 2.5f * static_cast<float>(i % side);
+      t.z[v] += 2.5f * static_cast<float>(i / side);
+    }
+  }
+  const float middle = 1.25f * static_cast<float>(side);
+  file.camera.eye = {middle, 3 * middle, 3 * middle};
+  file.camera.at = {middle, 0, middle};
+  file.camera.up = {0, 1, 0};
+  return file;
+}
+
 /// A scene at each frame.
 class Moving {
  public:
-  explicit Moving(const Scene& scene) : rest_(scene) {
+  /// One object moves alone, unless it is kAll.
+  explicit Moving(const Scene& scene, std::size_t object) : rest_(scene), object_(object) {
     const auto& g = scene.geometry;
+    last_ = g.triangles.vertex_count();
+    if (object != EmbreeScene::kAll) {
+      first_ = 3 * std::size_t{g.objects[object].first_triangle};
+      last_ = first_ + 3 * std::size_t{g.objects[object].triangle_count};
+    }
     for (const auto* axis : {&g.triangles.x, &g.triangles.y, &g.triangles.z})
       if (!axis->empty()) {
         const auto [lo, hi] = std::minmax_element(axis->begin(), axis->end());
@@ -73,7 +104,7 @@ class Moving {
   Scene at(int frame) const {
     Scene s = rest_;
     Triangles& t = s.geometry.triangles;
-    for (std::size_t i = 0; i < t.x.size(); ++i)
+    for (std::size_t i = first_; i < last_; ++i)
       t.y[i] += static_cast<float>(.1 * width_ * std::sin(5 * t.x[i] / width_ + .3 * frame));
     Spheres& b = s.geometry.spheres;
     test::Random random(7);
@@ -86,9 +117,17 @@ class Moving {
     }
     return s;
   }
+  void update(World& world, const Scene& scene) const {
+    if (object_ == EmbreeScene::kAll)
+      world.update(scene, {.threads = 1});
+    else
+      world.update(scene, {.threads = 1}, {&scene.geometry.objects[object_], 1});
+  }
 
  private:
   const Scene& rest_;
+  const std::size_t object_;
+  std::size_t first_ = 0, last_ = 0;  ///< vertices that move
   double width_ = 0;
 };
 
@@ -108,11 +147,14 @@ EmbreeMode fastest(EmbreeScene& scene, const RayBuffer& rays) {
 }
 
 void run(const std::string& name, int frames) {
-  SceneFile file = name == "balls" ? balls() : scene_named(name);
+  const bool are_meshes = name.starts_with("meshes ");
+  const int count = are_meshes ? std::max(1, std::atoi(name.c_str() + 7)) : 0;
+  const std::size_t object = are_meshes ? static_cast<std::size_t>(count / 2) : EmbreeScene::kAll;
+  SceneFile file = name == "balls" ? balls() : are_meshes ? meshes(count) : scene_named(name);
   file.scene.geometry.planes = {};
   file.scene.geometry.cones = {};
   file.camera.width = file.camera.height = 256;
-  const Moving moving(file.scene);
+  const Moving moving(file.scene, object);
   const RayBuffer rays = camera_rays(file.camera);
   World world(file.scene, {.threads = 1});
   std::vector<std::unique_ptr<EmbreeScene>> embree;
@@ -127,11 +169,11 @@ void run(const std::string& name, int frames) {
   answers.resize(rays.size(), false);
   for (int frame = 1; frame <= frames; ++frame) {
     const Scene scene = moving.at(frame);
-    times[0].update.push_back(milliseconds([&] { world.update(scene, {.threads = 1}); }));
+    times[0].update.push_back(milliseconds([&] { moving.update(world, scene); }));
     times[0].rays.push_back(
         milliseconds([&] { ask_in_streams(world, rays, false, rays.size(), {}, answers); }));
     for (std::size_t k = 0; k < embree.size(); ++k) {
-      embree[k]->move(scene);
+      embree[k]->move(scene, object);
       times[k + 1].update.push_back(milliseconds([&] { embree[k]->commit(); }));
       times[k + 1].rays.push_back(milliseconds([&] { embree[k]->trace(rays, false, modes[k]); }));
     }
@@ -165,7 +207,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   if (scenes.empty()) {
-    scenes = {"balls", "mount 6", "mount 7", "mount 8"};
+    scenes = {"balls", "mount 6", "mount 7", "mount 8", "meshes 16", "meshes 100"};
     const std::string bunny = GRELHA_SHARED_SCENES "/ply/bunny.ply";
     if (std::filesystem::exists(bunny))
       scenes.push_back(bunny);

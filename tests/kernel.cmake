@@ -40,7 +40,7 @@ target_sources(query_test PRIVATE kernel/query/any_size_test.cpp
   kernel/query/crossings_test.cpp kernel/query/rays_test.cpp)
 grelha_test(kernel/query/all_hits property grelha::kernel)
 grelha_test(kernel/query/world property grelha::kernel)
-target_sources(world_test PRIVATE support/same_grids.cpp)
+target_sources(world_test PRIVATE kernel/query/meshes_test.cpp support/same_grids.cpp)
 grelha_test(kernel/query/closest_point property grelha::kernel)
 grelha_test(kernel/shade/shade unit grelha::kernel)
 target_sources(shade_test PRIVATE kernel/shade/bounces_test.cpp)

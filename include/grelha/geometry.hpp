@@ -106,6 +106,7 @@ struct Triangles {
 /// A range of triangles that form one object (a PLY file, an inline mesh) and get their own grid.
 struct Object {
   std::uint32_t first_triangle = 0, triangle_count = 0;
+  bool visible = true;  ///< false: its triangles keep their ids, and no query finds them
 };
 
 /// All primitives of a scene. Primitive ids count planes first, then spheres, triangles and cones,

@@ -16,6 +16,7 @@
 #include "grelha/image.hpp"
 #include "grelha/inside.hpp"
 #include "grelha/mesh_check.hpp"
+#include "grelha/meshes.hpp"
 #include "grelha/owning_world.hpp"
 #include "grelha/query.hpp"
 #include "grelha/render.hpp"

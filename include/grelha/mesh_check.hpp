@@ -45,9 +45,9 @@ struct MeshCheck {
   bool is_edge_manifold() const { return nonmanifold_edges.count == 0; }
 };
 
-/// Checks the triangles of a scene. Exact; takes time and memory in proportion to their number.
-/// Triangles that cross each other are not looked for. Throws std::invalid_argument if a triangle
-/// names a vertex that is not there.
+/// Checks the triangles of a scene that are visible. Exact; takes time and memory in proportion to
+/// their number. Triangles that cross each other are not looked for. Throws std::invalid_argument
+/// if a triangle names a vertex that is not there, or an object a triangle.
 MeshCheck check_mesh(const SceneSpans& scene);
 /// The same of a World, which checks once and keeps the answer.
 const MeshCheck& check_mesh(const World& world);

@@ -28,6 +28,9 @@ struct BadNumber : std::invalid_argument {
 /// A scene that counts from an offset: a point of the caller is its own + offset.
 struct OffsetScene : Scene {
   std::array<double, 3> offset{};  ///< scene units
+  /// of several meshes (meshes.hpp) the first vertex of each, and the number of vertices;
+  /// geometry.objects are their triangles then; empty: one mesh
+  std::vector<std::uint32_t> first_vertices{};
 };
 
 /// Copies faces, each three indices below `vertices`, counter-clockwise from the front: triangles
@@ -67,6 +70,11 @@ class OwningWorld {
   /// bit for bit. Doubles have the offset subtracted, which stays as it is; floats count from it.
   /// Throws what scene_of() and World's constructor throw. The world is then as it was.
   void move(const PointArray& points, const BuildOptions& options);
+  /// Replaces the scene by one where the triangles of some objects moved or were added, or some were
+  /// hidden or shown, and nothing else changed: World's constructor shares grids of the others.
+  /// Masks stay, those of what was added are 255. Throws what that throws, and then nothing has
+  /// changed.
+  void replace(OffsetScene scene, const BuildOptions& options, std::span<const Object> moved);
   /// Gives each primitive a mask (QueryOptions::mask), or none takes the masks away. Throws
   /// std::invalid_argument for another number.
   void set_masks(std::span<const std::uint8_t> masks);

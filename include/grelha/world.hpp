@@ -61,10 +61,11 @@ class World {
   /// length, an index is out of range, or the scene is smaller than kLeastScene. Throws TooLarge
   /// and Stopped as BuildOptions describe.
   World(const SceneSpans& scene, const BuildOptions& options);
-  /// The same where the triangles of some objects moved since `before`, and nothing else changed:
-  /// `moved` names their ranges. Grids over other objects are shared with `before`, not built, if
-  /// they would have the same cells: mostly while the box around the scene stays as it is. Each of
-  /// the two may outlive the other.
+  /// The same where the triangles of some objects moved since `before`, new ones stand behind the
+  /// others, or some were hidden or shown, and nothing else changed: `moved` names the ranges of
+  /// those that moved or are new. Grids over other objects are shared with `before`, not built, if
+  /// they would have the same cells: mostly while the size of the scene stays as it is. Objects that
+  /// moved get grids of their own before others do. Each of the two may outlive the other.
   World(const SceneSpans& scene,
         const BuildOptions& options,
         const World& before,

@@ -12,6 +12,7 @@
 
 #include "kernel/base/expansion.hpp"
 #include "kernel/grid/world_impl.hpp"
+#include "kernel/scene/visible.hpp"
 
 namespace grelha {
 namespace {
@@ -21,7 +22,8 @@ constexpr std::uint32_t kUnseen = ~std::uint32_t{0};
 /// One vertex for each place.
 class VertexPositions {
  public:
-  explicit VertexPositions(const TriangleSpans& t) : t_(t), of_(t.vertex_count(), kUnseen) {
+  explicit VertexPositions(const GeometrySpans& g)
+      : g_(g), t_(g.triangles), of_(t_.vertex_count(), kUnseen) {
     std::size_t used = 0;
     each_corner([&](std::uint32_t vertex) {
       if (vertex >= of_.size())
@@ -41,9 +43,11 @@ class VertexPositions {
  private:
   template <class Visit>
   void each_corner(const Visit& visit) const {
-    for (const Indices corner : {t_.a, t_.b, t_.c})
-      for (const std::uint32_t vertex : corner)
-        visit(vertex);
+    each_visible_run(g_, [&](std::uint32_t first, std::uint32_t end) {
+      for (const Indices corner : {t_.a, t_.b, t_.c})
+        for (const std::uint32_t vertex : corner.subspan(first, end - first))
+          visit(vertex);
+    });
   }
   bool is_same(std::uint32_t v, std::uint32_t w) const {
     return t_.x[v] == t_.x[w] && t_.y[v] == t_.y[w] && t_.z[v] == t_.z[w];
@@ -66,6 +70,7 @@ class VertexPositions {
     }
   }
 
+  const GeometrySpans& g_;
   const TriangleSpans& t_;
   std::vector<std::uint32_t> of_;     ///< [vertices] kUnseen: of no triangle
   std::vector<std::uint32_t> table_;  ///< open addressing
@@ -130,9 +135,9 @@ bool is_flat(const float (&corner)[3][3]) {
 
 class MeshChecker {
  public:
-  MeshChecker(const TriangleSpans& t, std::uint32_t first_id)
-      : t_(t), first_id_(first_id), positions_(t) {
-    found_.triangles = t.size();
+  MeshChecker(const GeometrySpans& g, std::uint32_t first_id)
+      : g_(g), t_(g.triangles), first_id_(first_id), positions_(g) {
+    each_triangle([&](std::uint32_t) { ++found_.triangles; });
     found_.vertices = positions_.count();
   }
 
@@ -157,10 +162,12 @@ class MeshChecker {
   }
 
   void check_triangles() {
-    std::vector<CornerSet> items(t_.size());
-    for (std::uint32_t i = 0; i < t_.size(); ++i) {
-      items[i] = {{place(i, 0), place(i, 1), place(i, 2)}, i, 0};
-      std::sort(items[i].vertex, items[i].vertex + 3);
+    std::vector<CornerSet> items;
+    items.reserve(found_.triangles);
+    each_triangle([&](std::uint32_t i) {
+      CornerSet& item =
+          items.emplace_back(CornerSet{{place(i, 0), place(i, 1), place(i, 2)}, i, 0});
+      std::sort(item.vertex, item.vertex + 3);
       float corner[3][3];
       for (std::uint32_t k = 0; k < 3; ++k) {
         const std::uint32_t v = vertex(i, k);
@@ -169,7 +176,7 @@ class MeshChecker {
       }
       if (!has_three_positions(i) || is_flat(corner))
         found_.degenerate_triangles.first.push_back(first_id_ + i);
-    }
+    });
     each_same(items, t_.vertex_count(), [&](std::span<const CornerSet> same) {
       for (const CornerSet& item : same.subspan(1))
         found_.duplicate_triangles.first.push_back(first_id_ + item.triangle);
@@ -178,12 +185,13 @@ class MeshChecker {
 
   void check_edges() {
     std::vector<CornerSet> items;
-    items.reserve(3 * t_.size());
-    for (std::uint32_t i = 0; i < t_.size(); ++i)
+    items.reserve(3 * found_.triangles);
+    each_triangle([&](std::uint32_t i) {
       for (std::uint32_t k = 0; has_three_positions(i) && k < 3; ++k) {
         const auto [low, high] = std::minmax({place(i, k), place(i, (k + 1) % 3)});
         items.push_back({{low, high, 0}, i, k});
       }
+    });
     each_same(items, t_.vertex_count(), [&](std::span<const CornerSet> same) { check_edge(same); });
   }
   void check_edge(std::span<const CornerSet> same) {
@@ -222,6 +230,15 @@ class MeshChecker {
     all.shrink_to_fit();
   }
 
+  template <class Visit>
+  void each_triangle(const Visit& visit) const {
+    each_visible_run(g_, [&](std::uint32_t first, std::uint32_t end) {
+      for (std::uint32_t i = first; i < end; ++i)
+        visit(i);
+    });
+  }
+
+  const GeometrySpans& g_;
   const TriangleSpans& t_;
   const std::uint32_t first_id_;
   const VertexPositions positions_;
@@ -232,8 +249,9 @@ class MeshChecker {
 
 MeshCheck check_mesh(const SceneSpans& scene) {
   const GeometrySpans& g = scene.geometry;
+  expect_objects(g);
   const std::size_t first_id = g.planes.size() + g.spheres.size();
-  return MeshChecker(g.triangles, static_cast<std::uint32_t>(first_id)).check();
+  return MeshChecker(g, static_cast<std::uint32_t>(first_id)).check();
 }
 
 const MeshCheck& check_mesh(const World& world) {

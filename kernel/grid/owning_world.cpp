@@ -156,6 +156,17 @@ void OwningWorld::move(const PointArray& points, const BuildOptions& options) {
   }
 }
 
+void OwningWorld::replace(OffsetScene scene,
+                          const BuildOptions& options,
+                          std::span<const Object> moved) {
+  OwningWorld next(std::move(scene), options, *this, moved);
+  if (!masks_.empty()) {
+    next.masks_ = masks_;
+    next.masks_.resize(next.world_.impl().primitives.ids.end(), 255);
+  }
+  *this = std::move(next);
+}
+
 void OwningWorld::set_masks(std::span<const std::uint8_t> masks) {
   const std::size_t all = world_.impl().primitives.ids.end();
   if (!masks.empty() && masks.size() != all)

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include <omp.h>
 
@@ -63,27 +65,67 @@ bool is_valid(const Primitives& p, std::uint32_t id) {
 }
 
 void append(Ids& to, std::uint32_t first, std::uint32_t end) {
-  for (std::uint32_t id = first; id < end; ++id)
-    to.push_back(id);
+  const std::size_t before = to.size();
+  to.resize(before + (end - first));
+  std::iota(to.begin() + static_cast<std::ptrdiff_t>(before), to.end(), first);
 }
+
+/// Numbers of the objects that get grids of their own, as many as may: visible ones that are not
+/// small, those that overlap favoured ranges first.
+std::vector<std::size_t> objects_apart(std::span<const Object> objects,
+                                       std::span<const Object> favoured) {
+  std::vector<std::size_t> apart;
+  std::vector<char> taken(objects.size());
+  const auto take = [&](std::size_t i) {
+    if (apart.size() + 1 < static_cast<std::size_t>(kMostGrids) && objects[i].visible &&
+        objects[i].triangle_count >= kSmallObject && !std::exchange(taken[i], 1))
+      apart.push_back(i);
+  };
+  const auto end_of = [](const Object& o) {
+    return std::uint64_t{o.first_triangle} + o.triangle_count;
+  };
+  for (const Object& range : favoured) {
+    auto at = std::ranges::upper_bound(objects, range.first_triangle, {}, end_of);
+    for (; at != objects.end() && at->first_triangle < end_of(range); ++at)
+      take(static_cast<std::size_t>(at - objects.begin()));
+  }
+  for (std::size_t i = 0; i < objects.size(); ++i)
+    take(i);
+  return apart;
+}
+
+/// Groups of ids, one per grid: first what shares one, then objects with one each.
+struct Groups {
+  std::vector<Ids> ids{1};
+  Ids hidden;               ///< of objects that no query finds
+  std::vector<Object> own;  ///< the objects, the favoured first
+};
 
 /// Triangles that are loose, or of small objects, join the first group; larger objects get one
 /// each.
-void group_triangles(const Primitives& p, std::vector<Ids>& groups) {
+void group_triangles(const Primitives& p, std::span<const Object> favoured, Groups& groups) {
+  const std::span<const Object> objects = p.geometry.objects;
+  std::vector<char> is_apart(objects.size());
+  for (const std::size_t i : objects_apart(objects, favoured)) {
+    is_apart[i] = 1;
+    groups.own.push_back(objects[i]);
+  }
   const std::uint32_t first_id = p.ids.begin(PrimitiveKind::kTriangle);
   std::uint32_t next = first_id;
-  for (const Object& o : p.geometry.objects) {
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const Object& o = objects[i];
     const std::uint32_t first = first_id + o.first_triangle;
-    append(groups.front(), next, first);
+    append(groups.ids.front(), next, first);
     next = first + o.triangle_count;
-    if (o.triangle_count < kSmallObject || groups.size() >= static_cast<std::size_t>(kMostGrids)) {
-      append(groups.front(), first, next);
-    } else {
-      reserve_to_fill(groups.emplace_back(), o.triangle_count);
-      append(groups.back(), first, next);
-    }
+    if (is_apart[i])
+      reserve_to_fill(groups.ids.emplace_back(), o.triangle_count);
+    append(!o.visible    ? groups.hidden
+           : is_apart[i] ? groups.ids.back()
+                         : groups.ids.front(),
+           first,
+           next);
   }
-  append(groups.front(), next, p.ids.end(PrimitiveKind::kTriangle));
+  append(groups.ids.front(), next, p.ids.end(PrimitiveKind::kTriangle));
 }
 
 std::size_t triangles_in_objects(const Primitives& p) {
@@ -94,25 +136,27 @@ std::size_t triangles_in_objects(const Primitives& p) {
 }
 
 /// No ray hits a primitive with numbers that are not finite, and it would leave each cell in doubt.
-void drop_invalid(const Primitives& p, std::vector<Ids>& groups) {
+void drop_invalid(const Primitives& p, Groups& groups) {
   if (all_valid(p.geometry))
     return;
-  for (Ids& ids : groups)
+  const auto drop = [&](Ids& ids) {
     std::erase_if(ids, [&](std::uint32_t id) { return !is_valid(p, id); });
+  };
+  std::ranges::for_each(groups.ids, drop);
+  drop(groups.hidden);
 }
 
-/// Groups of ids, one per grid: first loose primitives with small objects, then each larger object.
-std::vector<Ids> group(const Primitives& p) {
-  std::vector<Ids> groups(1);
-  reserve_to_fill(groups.front(), p.finite_count() - triangles_in_objects(p));
+Groups group(const Primitives& p, std::span<const Object> favoured) {
+  Groups groups;
+  reserve_to_fill(groups.ids.front(), p.finite_count() - triangles_in_objects(p));
   for_each_finite_shape([&]<class Shape>() {
     if constexpr (Shape::kKind == PrimitiveKind::kTriangle)
-      group_triangles(p, groups);
+      group_triangles(p, favoured, groups);
     else
-      append(groups.front(), p.ids.begin(Shape::kKind), p.ids.end(Shape::kKind));
+      append(groups.ids.front(), p.ids.begin(Shape::kKind), p.ids.end(Shape::kKind));
   });
   drop_invalid(p, groups);
-  std::erase_if(groups, [](const Ids& g) { return g.empty(); });
+  std::erase_if(groups.ids, [](const Ids& g) { return g.empty(); });
   return groups;
 }
 
@@ -143,6 +187,15 @@ bool remove_few_outliers(const Primitives& p, Ids& ids, Ids& outside) {
   std::copy_if(ids.begin(), ids.end(), std::back_inserter(outside), is_round);
   std::erase_if(ids, is_round);
   return true;
+}
+
+/// At least `length`, by less than a quarter more, and mostly the same if it changes a little: then
+/// grids of what did not move stay as they are.
+double rounded_up(double length) {
+  if (length == 0)
+    return 0;
+  const double step = std::ldexp(.25, std::ilogb(length));
+  return step * std::ceil(length / step);
 }
 
 /// The grid of some primitives in a scene of that diagonal, with a pad for rays that start as far
@@ -180,15 +233,25 @@ namespace {
 /// Primitives that may get grids, group by group.
 class Planner {
  public:
-  Planner(const Primitives& p, const BuildOptions& options, std::vector<Ids> groups)
+  Planner(const Primitives& p, const BuildOptions& options, Groups groups, const PlanMemory& before)
       : p_(p),
         threads_(threads_of(options)),
         density_(options.density > 0 ? options.density : kDensity),
-        groups_(std::move(groups)) {
+        groups_(std::move(groups.ids)) {
+    memory_.own = std::move(groups.own);
     for (const Ids& ids : groups_) {
-      extents_.push_back(extent_of(p, ids, threads_));
+      extents_.push_back(measure(ids, before));
       plan_.all.add(extents_.back().box);
     }
+    if (!groups.hidden.empty())  // so that hiding changes no grid
+      plan_.all.add(measure(groups.hidden, before).box);
+    memory_.group_count = groups_.size();
+    memory_.density = density_;
+    memory_.diagonal = rounded_up(plan_.all.diagonal());
+    if (memory_.group_count != before.group_count || memory_.density != before.density ||
+        memory_.diagonal != before.diagonal)
+      for (PlannedGroup& group : memory_.groups)
+        group.grid.reset();
   }
 
   /// Throws std::invalid_argument if the scene is too small.
@@ -205,12 +268,23 @@ class Planner {
   void plan_groups() {
     for (std::size_t i = 0; i < groups_.size(); ++i) {
       Ids ids = std::move(groups_[i]);
+      const std::size_t all = ids.size();
+      if (i < memory_.group_count && memory_.groups[i].grid) {
+        plan_.parts.push_back({std::move(ids), *memory_.groups[i].grid});
+        continue;
+      }
       const Extent extent = remove_outliers(ids, extents_[i]);
       if (ids.size() <= kFewest && plan_.apart.size() + ids.size() <= kMostOutside)
         append(plan_.apart, ids);
-      else if (!ids.empty())
+      else if (!ids.empty()) {
+        const bool is_whole = ids.size() == all;
         plan_group(std::move(ids), extent.box);
+        if (is_whole && i < memory_.group_count)
+          memory_.groups[i].grid = plan_.parts.back().grid;
+      }
     }
+    if (groups_.size() > memory_.group_count)  // clusters take grids from what is planned later
+      memory_.group_count = 0;
     groups_.clear();
   }
 
@@ -219,11 +293,25 @@ class Planner {
     for (const Ids& ids : groups_)
       append(plan_.apart, ids);
     std::sort(plan_.apart.begin(), plan_.apart.end());
+    plan_.memory = std::move(memory_);
     return std::move(plan_);
   }
 
  private:
   static void append(Ids& to, const Ids& ids) { to.insert(to.end(), ids.begin(), ids.end()); }
+
+  /// The extent of a group, which did not change where the plan before has it.
+  Extent measure(const Ids& ids, const PlanMemory& before) {
+    PlannedGroup group{ranges_of(ids), {}, {}};
+    const auto same = [&](const PlannedGroup& o) { return o.ids == group.ids; };
+    const auto at = std::ranges::find_if(before.groups, same);
+    if (at != before.groups.end() && !group.ids.empty())
+      group = *at;
+    else
+      group.extent = extent_of(p_, ids, threads_);
+    memory_.groups.push_back(std::move(group));
+    return memory_.groups.back().extent;
+  }
 
   /// Takes out the primitives that one grid does not suit; returns the extent of the rest.
   Extent remove_outliers(Ids& ids, Extent before) {
@@ -242,7 +330,7 @@ class Planner {
   }
 
   void plan_group(Ids ids, const Box& box) {
-    Grid grid = grid_over(p_, ids, box, density_, plan_.all.diagonal());
+    Grid grid = grid_over(p_, ids, box, density_, memory_.diagonal);
     plan_.parts.push_back({std::move(ids), std::move(grid)});
   }
 
@@ -251,20 +339,24 @@ class Planner {
   const double density_;
   std::vector<Ids> groups_;
   std::vector<Extent> extents_;  ///< of the groups
+  PlanMemory memory_;
   Plan plan_;
 };
 
 }  // namespace
 
-Plan plan_grids(const Primitives& p, const BuildOptions& options, BuildProgress& progress) {
+Plan plan_grids(const Primitives& p,
+                const BuildOptions& options,
+                BuildProgress& progress,
+                const PlanMemory& before) {
   const auto step = [&progress] {
     progress.step();
     progress.throw_if_cancelled();
   };
   progress.expect(kPlanShare, 3);
-  std::vector<Ids> groups = group(p);
+  Groups groups = group(p, before.own);
   step();
-  Planner planner(p, options, std::move(groups));
+  Planner planner(p, options, std::move(groups), before);
   planner.expect_size();
   step();
   if (options.grid)

@@ -7,6 +7,7 @@
 
 #include "kernel/grid/box_levels.hpp"
 #include "kernel/grid/packed_order.hpp"
+#include "kernel/scene/visible.hpp"
 #include "kernel/shapes/triangle.hpp"
 
 namespace grelha {
@@ -171,16 +172,21 @@ struct OrderedTriangle {
   std::uint32_t id;
 };
 
-std::vector<OrderedTriangle> ordered(const Triangle::Source& triangles) {
-  std::vector<OrderedTriangle> placed(triangles.size());
-  for (std::size_t i = 0; i < placed.size(); ++i) {
-    const Triangle::Fields<float> t = triangles[i];
-    placed[i].id = static_cast<std::uint32_t>(i);
-    for (int a = 0; a < 3; ++a) {
-      const auto [lo, hi] = std::minmax({t.corner[0][a], t.corner[1][a], t.corner[2][a]});
-      placed[i].at[a] = .5f * lo + .5f * hi;
+std::vector<OrderedTriangle> ordered(const GeometrySpans& geometry,
+                                     const Triangle::Source& triangles) {
+  std::vector<OrderedTriangle> placed;
+  placed.reserve(triangles.size());
+  each_visible_run(geometry, [&](std::uint32_t first, std::uint32_t end) {
+    for (std::uint32_t i = first; i < end; ++i) {
+      const Triangle::Fields<float> t = triangles[i];
+      OrderedTriangle& one = placed.emplace_back();
+      one.id = i;
+      for (int a = 0; a < 3; ++a) {
+        const auto [lo, hi] = std::minmax({t.corner[0][a], t.corner[1][a], t.corner[2][a]});
+        one.at[a] = .5f * lo + .5f * hi;
+      }
     }
-  }
+  });
   PackedOrder({1, 1, 1}).sort(std::span(placed));
   return placed;
 }
@@ -248,11 +254,9 @@ void each_eight(std::span<Item> items, const Make& make) {
 
 }  // namespace
 
-WindingTree::WindingTree(const TriangleSpans& spans) {
-  GeometrySpans geometry;
-  geometry.triangles = spans;
+WindingTree::WindingTree(const GeometrySpans& geometry) {
   const Triangle::Source triangles(geometry);
-  const std::vector<OrderedTriangle> placed = ordered(triangles);
+  const std::vector<OrderedTriangle> placed = ordered(geometry, triangles);
   blocks.resize(rows_of(placed.size()));
   std::vector<Cluster> clusters(blocks.size());
   each_eight(std::span(placed), [&](std::span<const OrderedTriangle> of, std::size_t i) {

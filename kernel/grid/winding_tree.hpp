@@ -51,8 +51,8 @@ struct WindingTree {
   RawVector<TriangleBlock> blocks;
   WindingTreeView view;
 
-  explicit WindingTree(const TriangleSpans& triangles);
-  WindingTree(const WindingTree&) = delete;  ///< the view points into it
+  explicit WindingTree(const GeometrySpans& geometry);  ///< of visible triangles
+  WindingTree(const WindingTree&) = delete;             ///< the view points into it
 };
 
 }  // namespace grelha

@@ -9,6 +9,7 @@
 #include "kernel/grid/memory_estimate.hpp"
 #include "kernel/grid/plan.hpp"
 #include "kernel/base/raw_vector.hpp"
+#include "kernel/scene/visible.hpp"
 
 namespace grelha {
 namespace {
@@ -47,14 +48,7 @@ void check(const SceneSpans& scene) {
   for (const auto* v : {&g.triangles.a, &g.triangles.b, &g.triangles.c})
     if (beyond(*v, vertices))
       throw std::invalid_argument("a triangle names a vertex that is not there");
-  std::uint64_t next = 0;
-  for (const Object& o : g.objects) {
-    if (o.first_triangle < next)
-      throw std::invalid_argument("objects must be disjoint and ascend");
-    next = std::uint64_t{o.first_triangle} + o.triangle_count;
-  }
-  if (next > g.triangles.size())
-    throw std::invalid_argument("an object names a triangle that is not there");
+  expect_objects(g);
 }
 
 /// The scene with indices of materials, `zeros` where the caller gave none, checked.
@@ -91,11 +85,13 @@ World::Impl::Impl(const SceneSpans& s,
       lights(scene.lights, scene.background) {
   const KeepThreadsAwake awake;
   BuildProgress progress(options.progress);
-  Plan plan = plan_grids(primitives, options, progress);
+  Plan plan = plan_grids(
+      primitives, options, progress, before ? before->memory_of_unmoved(moved) : PlanMemory());
+  planned = std::move(plan.memory);
   if (options.most_bytes > 0 && !surely_fits(primitives, options.most_bytes))
     if (const BuildMemory need = memory_of(scene, primitives, plan); need.peak > options.most_bytes)
       throw TooLarge(need);
-  fill(plan, threads_of(options), progress, before, moved);
+  fill(plan, threads_of(options), progress, before, ids_of(moved));
   outside = build_list(primitives, plan.apart);
   progress.finish();
   progress.throw_if_cancelled();
@@ -107,8 +103,9 @@ World::Impl::Impl(const SceneSpans& s,
 
 std::size_t World::Impl::bytes() const {
   std::size_t sum = outside.bytes() + copies.size() * sizeof(Copy);
-  for (const auto& g : grids)
-    sum += g->grid.stats().bytes;
+  for (const auto* const some : {&grids, &hidden})
+    for (const auto& g : *some)
+      sum += g->grid.stats().bytes;
   for_each_shape(
       [&]<class Shape>() { sum += Shape::Source::kSetupBytes * primitives.of<Shape>().size(); });
   return sum;
@@ -164,20 +161,44 @@ void World::Impl::set_materials() {
   shading.glossy = materials.glossy;
 }
 
-/// A grid of the same layout over the same primitives, if they did not move; or null.
-std::shared_ptr<const BuiltGrid> World::Impl::find_unmoved(const BuiltGrid& planned,
-                                                           std::span<const Object> moved) const {
-  const std::uint64_t begin = planned.first_id, end = begin + planned.count;
-  const std::uint64_t first_triangle = primitives.ids.begin(PrimitiveKind::kTriangle);
-  for (const Object& o : moved)
-    if (const std::uint64_t first = first_triangle + o.first_triangle;
-        first < end && begin < first + o.triangle_count)
-      return nullptr;
-  for (const auto& built : grids)
-    if (planned.count > 0 && built->first_id == planned.first_id && built->count == planned.count &&
-        built->grid.has_layout_of(planned.grid))
-      return built;
+std::vector<IdRange> World::Impl::ids_of(std::span<const Object> objects) const {
+  const std::uint32_t first = primitives.ids.begin(PrimitiveKind::kTriangle);
+  std::vector<IdRange> ranges;
+  for (const Object& o : objects)
+    ranges.push_back({first + o.first_triangle, first + o.first_triangle + o.triangle_count});
+  return ranges;
+}
+
+/// What planning anew may keep where some triangles moved.
+PlanMemory World::Impl::memory_of_unmoved(std::span<const Object> moved) const {
+  PlanMemory kept = planned;
+  kept.own.insert(kept.own.begin(), moved.begin(), moved.end());
+  std::erase_if(kept.groups, [ids = ids_of(moved)](const PlannedGroup& group) {
+    return overlap(group.ids, ids);
+  });
+  return kept;
+}
+
+/// A grid of the same layout over primitives of the same ids, or null.
+World::Impl::SharedGrid World::Impl::find_same(const BuiltGrid& wanted) const {
+  if (!wanted.ids.empty())
+    for (const auto* const some : {&grids, &hidden})
+      for (const SharedGrid& built : *some)
+        if (built->ids == wanted.ids && built->grid.has_layout_of(wanted.grid))
+          return built;
   return nullptr;
+}
+
+/// Keeps grids of hidden objects, so that they can be shown again.
+void World::Impl::keep_hidden(const Impl& before, std::span<const IdRange> moved) {
+  std::vector<Object> objects(scene.geometry.objects.begin(), scene.geometry.objects.end());
+  std::erase_if(objects, [](const Object& o) { return o.visible; });
+  for (const IdRange& out : ids_of(objects))
+    for (const auto* const some : {&before.grids, &before.hidden})
+      for (const SharedGrid& built : *some)
+        if (built->ids.size() == 1 && built->ids[0].first >= out.first &&
+            built->ids[0].end <= out.end && !overlap(built->ids, moved))
+          hidden.push_back(built);
 }
 
 /// The plan's grids, each part's ids gone when they are done with.
@@ -185,17 +206,19 @@ void World::Impl::fill(Plan& plan,
                        int threads,
                        BuildProgress& progress,
                        const Impl* before,
-                       std::span<const Object> moved) {
+                       std::span<const IdRange> moved) {
+  if (before)
+    keep_hidden(*before, moved);
   double work = 0;
   for (const GridPlan& part : plan.parts)
     work += static_cast<double>(part.ids.size());
   for (GridPlan& part : plan.parts) {
     const std::vector<std::uint32_t> ids = std::move(part.ids);
     progress.throw_if_cancelled();
-    const bool in_a_row = ids.back() - ids.front() + 1 == ids.size();
-    BuiltGrid built{
-        std::move(part.grid), ids.front(), in_a_row ? static_cast<std::uint32_t>(ids.size()) : 0};
-    std::shared_ptr<const BuiltGrid> shared = before ? before->find_unmoved(built, moved) : nullptr;
+    BuiltGrid built{std::move(part.grid), ranges_of(ids)};
+    SharedGrid shared;
+    if (before && !overlap(built.ids, moved))
+      shared = before->find_same(built);
     if (!shared) {
       const double share = (1 - kPlanShare) * static_cast<double>(ids.size()) / work;
       fill_grid(primitives, ids, built.grid, threads, progress, share);

@@ -3,12 +3,15 @@
 
 #include <array>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "grelha/mesh_check.hpp"
 #include "grelha/world.hpp"
 #include "kernel/base/lazy.hpp"
 #include "kernel/grid/grid.hpp"
+#include "kernel/grid/id_ranges.hpp"
+#include "kernel/grid/plan.hpp"
 #include "kernel/grid/winding_tree.hpp"
 #include "kernel/scene/lights.hpp"
 #include "kernel/scene/materials.hpp"
@@ -17,19 +20,20 @@
 namespace grelha {
 
 class BuildProgress;
-struct Plan;
 
-/// A grid, and the range of its primitives' ids; `count` is 0 if they are no range.
+/// A grid, and the ids of its primitives; no ranges: they are too scattered to tell.
 struct BuiltGrid {
   Grid grid;
-  std::uint32_t first_id = 0, count = 0;
+  std::vector<IdRange> ids;
 };
 
 struct World::Impl {
   std::vector<std::uint32_t> no_materials;  ///< zeros, for kinds without material indices
   SceneSpans scene;
   Primitives primitives;
-  std::vector<std::shared_ptr<const BuiltGrid>> grids;  ///< an update may share some
+  std::vector<std::shared_ptr<const BuiltGrid>> grids;   ///< an update may share some
+  std::vector<std::shared_ptr<const BuiltGrid>> hidden;  ///< over objects that no query finds
+  PlanMemory planned;
   CellStore outside;
   std::vector<Copy> copies;
   std::vector<GridView> grid_views;
@@ -49,13 +53,16 @@ struct World::Impl {
   std::size_t bytes() const;
 
  private:
-  std::shared_ptr<const BuiltGrid> find_unmoved(const BuiltGrid& planned,
-                                                std::span<const Object> moved) const;
+  using SharedGrid = std::shared_ptr<const BuiltGrid>;
+  std::vector<IdRange> ids_of(std::span<const Object> objects) const;
+  SharedGrid find_same(const BuiltGrid& wanted) const;
+  PlanMemory memory_of_unmoved(std::span<const Object> moved) const;
   void fill(Plan& plan,
             int threads,
             BuildProgress& progress,
             const Impl* before,
-            std::span<const Object> moved);
+            std::span<const IdRange> moved);
+  void keep_hidden(const Impl& before, std::span<const IdRange> moved);
   void view_primitives();
   void view_copies();
   void view_grids(const Box& all);

@@ -39,7 +39,7 @@ void expect_none(const Findings<MeshEdge>& edges, const char* wanted, const char
 
 const WindingTreeView& winding_tree(const World& world) {
   const World::Impl& w = world.impl();
-  return w.winding_tree.get([&] { return w.scene.geometry.triangles; }).view;
+  return w.winding_tree.get([&] { return w.scene.geometry; }).view;
 }
 
 }  // namespace

@@ -1,0 +1,57 @@
+#pragma once
+// Several meshes in one scene: whose a triangle is, and changes of one mesh.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "grelha/owning_world.hpp"
+#include "grelha/rays.hpp"
+
+namespace grelha {
+
+/// One mesh among several.
+struct MeshArrays {
+  PointArray vertices;
+  std::span<const std::array<std::uint32_t, 3>> faces;  ///< indices below vertices.count
+};
+
+/// Joins meshes into one scene: ids count the triangles of all, mesh after mesh. Doubles in one
+/// mesh give all an offset, as scene_of() of one does. Throws what triangles_of() and scene_of() of
+/// one throw; the messages begin with "mesh 3: ".
+OffsetScene scene_of(std::span<const MeshArrays> meshes);
+
+/// Number of meshes that a scene was joined of; 1 of others.
+std::size_t mesh_count(const OffsetScene& scene);
+
+/// A triangle of one mesh among several; kNoPrimitive for what is no triangle.
+struct MeshFace {
+  std::uint32_t mesh = kNoPrimitive;                 ///< number of the mesh
+  std::uint32_t face = kNoPrimitive;                 ///< number of the triangle in it
+  bool operator==(const MeshFace&) const = default;  ///< the same triangle
+};
+/// Whose triangle a primitive is.
+MeshFace mesh_face(const OffsetScene& scene, std::uint32_t id);
+
+/// Ranges of one mesh in the arrays of its scene.
+struct MeshRange {
+  Object triangles;                                  ///< of geometry.triangles
+  std::uint32_t first_vertex = 0, vertex_count = 0;  ///< of its vertices
+};
+/// Throws std::invalid_argument for a number that no mesh has.
+MeshRange mesh_range(const OffsetScene& scene, std::size_t mesh);
+
+/// Replaces the vertices of one mesh by as many, and returns its triangles: what moved. Doubles
+/// have the offset subtracted, floats count from it. Throws BadNumber and std::invalid_argument,
+/// and then nothing has changed.
+Object move_mesh(OffsetScene& scene, std::size_t mesh, const PointArray& vertices);
+/// Hides a mesh or shows it again. Ids stay. Throws std::invalid_argument for a number that no mesh
+/// has.
+void show_mesh(OffsetScene& scene, std::size_t mesh, bool visible);
+/// Appends a mesh, whose vertices count as those of move_mesh(), and returns its triangles. The
+/// others keep their numbers and ids. Throws BadNumber and std::invalid_argument, also for a scene
+/// with anything but triangles; then nothing has changed.
+Object add_mesh(OffsetScene& scene, const MeshArrays& mesh);
+
+}  // namespace grelha

@@ -1,0 +1,268 @@
+// Several meshes in one World: whose triangles they are, and changes of one.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "grelha/distance.hpp"
+#include "grelha/inside.hpp"
+#include "grelha/mesh_check.hpp"
+#include "grelha/meshes.hpp"
+#include "kernel/grid/world_impl.hpp"
+#include "tests/support/random.hpp"
+#include "tests/support/same_grids.hpp"
+#include "tests/support/scenes.hpp"
+
+namespace grelha::test {
+namespace {
+
+/// A mesh of its own arrays.
+struct Mesh {
+  std::vector<Float3> vertices;
+  std::vector<std::array<std::uint32_t, 3>> faces;
+  MeshArrays arrays() const { return {PointArray(std::span(vertices)), faces}; }
+};
+
+Mesh mesh_of(const Scene& s, Float3 by) {
+  Mesh mesh;
+  const Triangles& t = s.geometry.triangles;
+  for (std::size_t v = 0; v < t.vertex_count(); ++v)
+    mesh.vertices.push_back({t.x[v] + by.x, t.y[v] + by.y, t.z[v] + by.z});
+  for (std::size_t i = 0; i < t.size(); ++i)
+    mesh.faces.push_back({t.a[i], t.b[i], t.c[i]});
+  return mesh;
+}
+
+/// Balls side by side, a small and an empty mesh among them.
+std::vector<Mesh> row_of_balls(int count) {
+  std::vector<Mesh> meshes;
+  for (int i = 0; i < count; ++i)
+    meshes.push_back(mesh_of(ball_mesh(24, 12, .1, static_cast<std::uint64_t>(i)),
+                             {2.5f * static_cast<float>(i), 0, 0}));
+  meshes.insert(meshes.begin() + 1, Mesh{});
+  meshes.push_back(mesh_of(ball_mesh(6, 4), {0, 3, 0}));
+  return meshes;
+}
+
+OffsetScene joined(const std::vector<Mesh>& meshes) {
+  std::vector<MeshArrays> arrays;
+  for (const Mesh& mesh : meshes)
+    arrays.push_back(mesh.arrays());
+  return scene_of(arrays);
+}
+
+/// Where the blocks of grids lie in memory.
+std::set<const void*> stores(const World& world) {
+  std::set<const void*> all;
+  for (int i = 0; i < world.impl().view.grid_count; ++i)
+    all.insert(world.impl().view.grids[i].lists.of<Triangle>().blocks);
+  return all;
+}
+std::size_t shared(const World& a, const World& b) {
+  const std::set<const void*> of_a = stores(a);
+  std::size_t count = 0;
+  for (const void* store : stores(b))
+    count += of_a.count(store);
+  return count;
+}
+
+/// The same hits, closest points and insides, by ids of `b` less `less` from an id on.
+void expect_same_answers(const World& a,
+                         const World& b,
+                         std::uint32_t from = kNoPrimitive,
+                         std::uint32_t less = 0) {
+  const auto own = [&](std::uint32_t id) {
+    return id != kNoPrimitive && id >= from ? id + less : id;
+  };
+  Random random(4);
+  for (int i = 0; i < 500; ++i) {
+    const Float3 p = random.point(9), way = random.direction();
+    const Hit x = closest(a, {p, way}), y = closest(b, {p, way});
+    ASSERT_EQ(x.id, own(y.id));
+    ASSERT_EQ(x.t, y.t);
+    const ClosestPoint near = closest_point(a, p), other = closest_point(b, p);
+    ASSERT_EQ(near.id, own(other.id));
+    ASSERT_EQ(near.point, other.point);
+    ASSERT_EQ(contains(a, p), contains(b, p));
+    ASSERT_EQ(contains(a, p, InsideRule::kWinding), contains(b, p, InsideRule::kWinding));
+  }
+}
+
+TEST(Meshes, KnowTheirTriangles) {
+  const std::vector<Mesh> meshes = row_of_balls(3);
+  const OffsetScene scene = joined(meshes);
+  ASSERT_EQ(mesh_count(scene), meshes.size());
+  std::uint32_t id = 0;
+  for (std::uint32_t m = 0; m < meshes.size(); ++m)
+    for (std::uint32_t face = 0; face < meshes[m].faces.size(); ++face)
+      ASSERT_EQ(mesh_face(scene, id++), (MeshFace{m, face}));
+  EXPECT_EQ(mesh_face(scene, id), MeshFace{});
+  EXPECT_EQ(mesh_face(scene, kNoPrimitive), MeshFace{});
+  OffsetScene one;
+  one.geometry.spheres.add({}, 1, 0);
+  add_triangle(one, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  EXPECT_EQ(mesh_count(one), 1u);
+  EXPECT_EQ(mesh_face(one, 0), MeshFace{});
+  EXPECT_EQ(mesh_face(one, 1), (MeshFace{0, 0}));
+}
+
+/// Of twenty meshes sixteen have grids of their own, the one that moves among them.
+TEST(Meshes, ThatMoveGetGridsOfTheirOwn) {
+  std::vector<Mesh> meshes = row_of_balls(20);
+  OffsetScene scene = joined(meshes);
+  OwningWorld world(scene, {});
+  for (int step = 0; step < 6; ++step) {
+    for (Float3& v : meshes[19].vertices)
+      v.y += .01f;
+    const Object moved = move_mesh(scene, 19, PointArray(std::span(meshes[19].vertices)));
+    const OwningWorld next(scene, {}, world, {&moved, 1});
+    EXPECT_EQ(next.world().grids().size(), 17u);
+    EXPECT_EQ(shared(world.world(), next.world()), step == 0 ? 15u : 16u) << step;
+    world.replace(scene, {}, {&moved, 1});
+    if (step % 5 == 0)
+      expect_same_answers(world.world(), World(scene, {}));
+  }
+}
+
+/// Where the box around all grows a little, grids are shared as well.
+TEST(Meshes, OfABoxThatGrowsStayBuilt) {
+  std::vector<Mesh> meshes = row_of_balls(4);
+  const OwningWorld world(joined(meshes), {});
+  for (Float3& v : meshes[4].vertices)
+    v.x += .01f;
+  const OffsetScene after = joined(meshes);
+  const Object& moved = after.geometry.objects[4];
+  const OwningWorld next(after, {}, world, {&moved, 1});
+  EXPECT_EQ(shared(world.world(), next.world()), 4u);
+  EXPECT_TRUE(same_grids(next.world(), World(after, {})));
+}
+
+TEST(Meshes, ThatAreHiddenAreNotThere) {
+  std::vector<Mesh> meshes = row_of_balls(4);
+  OffsetScene scene = joined(meshes);
+  const OwningWorld all(scene, {});
+  for (const std::size_t hidden : {std::size_t{0}, std::size_t{2}, meshes.size() - 1}) {
+    std::vector<Mesh> rest = meshes;
+    const auto faces = static_cast<std::uint32_t>(rest[hidden].faces.size());
+    rest[hidden] = {};
+    const std::uint32_t from = scene.geometry.objects[hidden].first_triangle;
+    show_mesh(scene, hidden, false);
+    const OwningWorld without(scene, {}, all, {});
+    EXPECT_EQ(shared(all.world(), without.world()), 4u);
+    EXPECT_TRUE(same_grids(without.world(), World(scene, {})));
+    const OffsetScene left = joined(rest);
+    expect_same_answers(without.world(), World(left, {}), from, faces);
+    EXPECT_EQ(check_mesh(without.world()).triangles, scene.geometry.triangles.size() - faces);
+    show_mesh(scene, hidden, true);
+    const OwningWorld again(scene, {}, without, {});
+    EXPECT_EQ(shared(again.world(), without.world()), 4u);
+    EXPECT_EQ(shared(again.world(), all.world()), 5u);
+    EXPECT_TRUE(same_grids(again.world(), all.world()));
+  }
+}
+
+/// A hidden mesh with a hole leaves the others closed.
+TEST(Meshes, ThatAreHiddenNeedNotBeClosed) {
+  std::vector<Mesh> meshes = row_of_balls(2);
+  meshes[0].faces.pop_back();
+  OffsetScene scene = joined(meshes);
+  EXPECT_THROW(contains(World(scene, {}), {0, 0, 0}), NotClosed);
+  show_mesh(scene, 0, false);
+  const World world(scene, {});
+  EXPECT_TRUE(check_mesh(scene).is_closed());
+  EXPECT_FALSE(contains(world, {0, 0, 0}));
+  EXPECT_TRUE(contains(world, {2.5f, 0, 0}));
+  EXPECT_NEAR(winding_number(world, {0, 0, 0}), 0, .01);
+  show_mesh(scene, 2, false);
+  show_mesh(scene, 3, false);
+  const World nothing(scene, {});
+  EXPECT_FALSE(closest(nothing, {{0, 0, 9}, {0, 0, -1}}));
+  EXPECT_EQ(closest_point(nothing, {0, 0, 0}).id, kNoPrimitive);
+  EXPECT_EQ(winding_number(nothing, {0, 0, 0}), 0);
+}
+
+TEST(Meshes, ThatAreAddedLeaveGridsOfOthers) {
+  std::vector<Mesh> meshes = row_of_balls(3);
+  OwningWorld world(joined(meshes), {});
+  const World* const before = &world.world();
+  const std::set<const void*> old = stores(*before);
+  std::vector<std::uint8_t> masks(world.scene().geometry.triangles.size(), 1);
+  world.set_masks(masks);
+  OffsetScene scene = world.scene();
+  meshes.push_back(mesh_of(ball_mesh(24, 12, .1, 9), {2.5f, 2.5f, 0}));
+  const Object added = add_mesh(scene, meshes.back().arrays());
+  world.replace(scene, {}, {&added, 1});
+  std::size_t kept = 0;
+  for (const void* store : stores(world.world()))
+    kept += old.count(store);
+  EXPECT_EQ(kept, 4u);
+  const OffsetScene all = joined(meshes);
+  EXPECT_TRUE(same_grids(world.world(), World(all, {})));
+  EXPECT_EQ(mesh_face(world.scene(), added.first_triangle), (MeshFace{5, 0}));
+  EXPECT_EQ(world.masks().size(), masks.size() + added.triangle_count);
+  EXPECT_EQ(world.masks().back(), 255);
+  OffsetScene one =
+      scene_of(PointArray(std::span(meshes[0].vertices)),
+               triangles_of<std::uint32_t>(meshes[0].faces, meshes[0].vertices.size()));
+  add_mesh(one, meshes[2].arrays());
+  EXPECT_EQ(mesh_count(one), 2u);
+  const OffsetScene two = joined({meshes[0], meshes[2]});
+  EXPECT_TRUE(same_grids(World(one, {}), World(two, {})));
+}
+
+TEST(Meshes, InDoubleHaveOneOffset) {
+  const std::vector<double> far = {1e7, 0, 0, 1e7 + 1, 0, 0, 1e7, 1, 0};
+  const std::vector<float> near = {10000004, 0, 0, 10000005, 0, 0, 10000004, 1, 0};
+  const std::vector<std::array<std::uint32_t, 3>> face = {{0, 1, 2}};
+  const MeshArrays meshes[] = {{PointArray(far.data(), 24, 3, "far"), face},
+                               {PointArray(near.data(), 12, 3, "near"), face}};
+  OffsetScene scene = scene_of(meshes);
+  EXPECT_NEAR(scene.offset[0], 1e7, 8);
+  EXPECT_EQ(scene.geometry.triangles.x[3] - scene.geometry.triangles.x[0], 4);
+  const std::vector<double> moved = {1e7 + 6, 0, 0, 1e7 + 7, 0, 0, 1e7 + 6, 1, 0};
+  move_mesh(scene, 1, PointArray(moved.data(), 24, 3, "moved"));
+  EXPECT_EQ(scene.geometry.triangles.x[3] - scene.geometry.triangles.x[0], 6);
+  const std::vector<float> local = {8, 0, 0, 9, 0, 0, 8, 1, 0};
+  move_mesh(scene, 1, PointArray(local.data(), 12, 3, "local"));
+  EXPECT_EQ(scene.geometry.triangles.x[3], 8);
+}
+
+template <class Work>
+std::string refusal(const Work& work) {
+  try {
+    work();
+  } catch (const std::invalid_argument& bad) {
+    return bad.what();
+  }
+  return "";
+}
+
+TEST(Meshes, AreRefusedByName) {
+  std::vector<Mesh> meshes = row_of_balls(2);
+  OffsetScene scene = joined(meshes);
+  const OffsetScene before = scene;
+  meshes[2].vertices[7].y = NAN;
+  EXPECT_EQ(refusal([&] { joined(meshes); }).find("mesh 2: points: expected finite"), 0u);
+  EXPECT_THROW(move_mesh(scene, 2, PointArray(std::span(meshes[2].vertices))), BadNumber);
+  EXPECT_THROW(add_mesh(scene, meshes[2].arrays()), BadNumber);
+  meshes[0].faces[3][1] = 1u << 30;
+  EXPECT_EQ(refusal([&] { joined(meshes); }).find("mesh 0: indices: expected"), 0u);
+  meshes[3].vertices.pop_back();
+  EXPECT_NE(refusal([&] {
+              move_mesh(scene, 3, PointArray(std::span(meshes[3].vertices)));
+            }).find("as many vertices as before"),
+            std::string::npos);
+  EXPECT_NE(refusal([&] { show_mesh(scene, 4, false); }).find("less than 4, found 4"),
+            std::string::npos);
+  EXPECT_EQ(scene.geometry.triangles.x, before.geometry.triangles.x);
+  EXPECT_EQ(scene.first_vertices, before.first_vertices);
+  scene.geometry.spheres.add({}, 1, 0);
+  EXPECT_THROW(add_mesh(scene, row_of_balls(1)[0].arrays()), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace grelha::test
