@@ -26,6 +26,12 @@ void expect_there(const void* pointer, const char* name) {
     refuse(name, "a pointer", "null");
 }
 
+void expect_at_most(std::size_t count, std::size_t most, const char* name) {
+  if (count > most)
+    throw TooMany(name + (": expected at most " + std::to_string(most)) + ", found " +
+                  std::to_string(count));
+}
+
 int expect_threads(int threads) {
   constexpr int kMost = 65536;
   if (threads < 0 || threads > kMost)

@@ -20,6 +20,9 @@ struct TooMany : std::length_error {
 /// Throws std::invalid_argument for null.
 void expect_there(const void* pointer, const char* name);
 
+/// Throws TooMany.
+void expect_at_most(std::size_t count, std::size_t most, const char* name);
+
 /// Returns the number of threads, or throws std::invalid_argument.
 int expect_threads(int threads);
 

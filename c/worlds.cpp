@@ -1,33 +1,9 @@
 #include <algorithm>
-#include <memory>
-#include <string>
 
 #include "c/world.hpp"
 
 namespace grelha::c {
 namespace {
-
-constexpr std::size_t kMostPrimitives = 0xFFFFFFFEu;
-constexpr std::size_t kMostVertices = std::size_t{1} << 32;
-
-void expect_at_most(std::size_t count, std::size_t most, const char* name) {
-  if (count > most)
-    throw TooMany(name + (": expected at most " + std::to_string(most)) + ", found " +
-                  std::to_string(count));
-}
-
-/// Stores a world of the scene that make() makes, null if anything throws.
-template <class Make>
-grelha_status make_world(grelha_world** world, int threads, const Make& make) noexcept {
-  if (world)
-    *world = nullptr;
-  return guarded([&] {
-    expect_there(world, "world");
-    OffsetScene scene = make();
-    const BuildOptions options{.threads = expect_threads(threads)};
-    *world = std::make_unique<grelha_world>(std::move(scene), options).release();
-  });
-}
 
 OffsetScene scene_of_triangles(const PointArray& vertices,
                                const std::uint32_t* indices,

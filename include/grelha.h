@@ -14,10 +14,10 @@
 // Units     Lengths are in the caller's units, within 1e18. t counts multiples of the direction.
 // Ids       The id of a triangle is its place in the caller's indices, that of a sphere its place
 //           in the caller's arrays.
-// Threads   Queries do not change a world, so any number of threads may ask one. While
-//           grelha_update(), grelha_update_double(), grelha_set_masks() or grelha_free() runs, no
-//           other call may use that world. The argument `threads` says how many share one call: 1:
-//           the calling thread alone; 0: one per processor. The number changes no bit of an answer.
+// Threads   Queries do not change a world, so any number of threads may ask one. While a function
+//           that takes a world without const runs, no other call may use that world. The argument
+//           `threads` says how many share one call: 1: the calling thread alone; 0: one per
+//           processor. The number changes no bit of an answer.
 // Errors    Functions that can fail return a grelha_status. They then say why by
 //           grelha_last_error(). No exception leaves a function. Nothing is printed.
 // Answers   They go to arrays of the caller. After an error their contents are unspecified.
@@ -199,6 +199,57 @@ typedef struct grelha_mesh_check {
 /// the answer. Triangles that cross each other are not looked for. Fails with GRELHA_INVALID for
 /// null.
 GRELHA_API grelha_status grelha_check_mesh(const grelha_world* world, grelha_mesh_check* found);
+
+/// One mesh among several. Members that are left out of an initializer are 0 or null.
+typedef struct grelha_mesh {
+  const float* vertices;    ///< [vertex_count] x y z; null if they are in double
+  const double* doubles;    ///< [vertex_count] x y z; null if they are floats
+  ptrdiff_t stride;         ///< bytes from one vertex to the next, not 0
+  size_t vertex_count;      ///< number of vertices
+  const uint32_t* indices;  ///< three for each triangle, counter-clockwise from the front
+  size_t triangle_count;    ///< number of triangles
+} grelha_mesh;
+
+/// Makes a world of copies of meshes, as grelha_new_triangles() does of one, with its errors. Ids
+/// count the triangles of all, mesh after mesh. Vertices in double in one of them give the world an
+/// offset (grelha_offset()), which is subtracted from all.
+GRELHA_API grelha_status grelha_new_meshes(const grelha_mesh* meshes,
+                                           size_t count,
+                                           int threads,
+                                           grelha_world** world);
+
+/// Finds whose triangles [count] ids are: mesh[i] is the number of the mesh, triangle[i] that of
+/// the triangle in it; each may be null. Both are GRELHA_NONE for GRELHA_NONE and for spheres. Fails
+/// with GRELHA_INVALID for null, and for an id that no primitive has.
+GRELHA_API grelha_status grelha_mesh_of(const grelha_world* world,
+                                        const uint32_t* ids,
+                                        size_t count,
+                                        uint32_t* mesh,
+                                        uint32_t* triangle);
+
+/// Moves the vertices of one mesh, as many as before; the indices are not read. Floats count from
+/// grelha_offset(), doubles from 0. Answers are those of a new world. Mostly no grid is built but
+/// its own. Errors are those of the function that made the world, and GRELHA_INVALID for a number
+/// that no mesh has and for worlds of spheres. The world is then as it was before.
+GRELHA_API grelha_status grelha_update_mesh(grelha_world* world,
+                                            size_t number,
+                                            const grelha_mesh* mesh,
+                                            int threads);
+
+/// Appends a mesh to a world of triangles, and stores its number unless the pointer is null.
+/// Numbers and ids of the others stay. With masks, its triangles have 255. Vertices and errors are
+/// those of grelha_update_mesh().
+GRELHA_API grelha_status grelha_add_mesh(grelha_world* world,
+                                         const grelha_mesh* mesh,
+                                         int threads,
+                                         size_t* number);
+
+/// Leaves a mesh out of all queries with 0, and takes it in again with another number. Ids and
+/// arrays stay, and its own grid. Errors are those of grelha_update_mesh().
+GRELHA_API grelha_status grelha_set_visible(grelha_world* world,
+                                            size_t number,
+                                            int visible,
+                                            int threads);
 
 /// Frees a world. Null is allowed.
 GRELHA_API void grelha_free(grelha_world* world);

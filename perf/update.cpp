@@ -1,5 +1,6 @@
 // Scenes whose vertices all move from frame to frame, or those of one mesh of many: the time of an
-// update and of 256 x 256 camera rays, beside Embree of quality LOW, MEDIUM and REFIT. One thread; the methods take turns.
+// update and of 256 x 256 camera rays, beside Embree of quality LOW, MEDIUM and REFIT. One thread;
+// the methods take turns.
 //
 // update [--scene NAME]... [--frames N]
 //

@@ -70,10 +70,10 @@ class OwningWorld {
   /// bit for bit. Doubles have the offset subtracted, which stays as it is; floats count from it.
   /// Throws what scene_of() and World's constructor throw. The world is then as it was.
   void move(const PointArray& points, const BuildOptions& options);
-  /// Replaces the scene by one where the triangles of some objects moved or were added, or some were
-  /// hidden or shown, and nothing else changed: World's constructor shares grids of the others.
-  /// Masks stay, those of what was added are 255. Throws what that throws, and then nothing has
-  /// changed.
+  /// Replaces the scene by one where the triangles of some objects moved or were added, or some
+  /// objects were hidden or shown, and nothing else changed: World's constructor shares grids of
+  /// the others. Masks stay, those of what was added are 255. Throws what that throws, and then
+  /// nothing has changed.
   void replace(OffsetScene scene, const BuildOptions& options, std::span<const Object> moved);
   /// Gives each primitive a mask (QueryOptions::mask), or none takes the masks away. Throws
   /// std::invalid_argument for another number.

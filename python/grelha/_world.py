@@ -35,7 +35,9 @@ def _arrays_of(mesh, name):
 
 
 class World:
-    """Triangles, ready for queries. It does not change, but by update(), update_mesh() and masks.
+    """Triangles, ready for queries.
+
+    It does not change, but by update(), update_mesh(), add_mesh(), set_visible() and masks.
 
     vertices   (n, 3) numbers. float32 is taken as it is. float64 is rounded to float32 after an
                offset is subtracted: the middle of the bounding box, on a grid of a power of two; 0
@@ -133,9 +135,42 @@ class World:
         """
         self._core = self._core.mesh_moved(mesh, vertices, threads)
 
+    def add_mesh(self, vertices, faces, *, threads=0):
+        """Appends a mesh. The others keep their numbers, ids and mostly their grids.
+
+        vertices, faces   as those of World; the offset stays, as for update_mesh()
+        threads           to build with; 0: one for each processor
+
+        Returns its number. With masks, its faces have 255. Raises TypeError or ValueError, and then
+        nothing has changed.
+        """
+        core = self._core.mesh_added(vertices, faces, threads)
+        if self._masks is not None:
+            more = np.full(len(core.faces()) - len(self._masks), 255, np.uint8)
+            self._masks = np.concatenate([self._masks, more])
+        self._core = core
+        return core.meshes() - 1
+
+    def set_visible(self, mesh, visible, *, threads=0):
+        """Leaves a mesh out of all queries, or takes it in again.
+
+        mesh      its number
+        visible   False: its faces keep their ids, but no query finds them, and insides and check()
+                  do not count them
+        threads   to build with; 0: one for each processor
+
+        The mesh keeps its arrays, and its grid if it has one of its own: mostly nothing is built.
+        Raises TypeError or ValueError, and then nothing has changed.
+        """
+        self._core = self._core.mesh_shown(mesh, bool(visible), threads)
+
+    def is_visible(self, mesh):
+        """False for a mesh that set_visible() left out."""
+        return self._core.is_visible(mesh)
+
     @property
     def meshes(self):
-        """The number of meshes that of() was given; 1 in other Worlds."""
+        """The number of meshes that of() and add_mesh() were given; 1 in other Worlds."""
         return self._core.meshes()
 
     def mesh_of(self, ids):

@@ -92,6 +92,17 @@ void define_making(py::module_& module, py::class_<Core>& core) {
              const int count = threads_in(threads);
              return Core{mesh_moved(*self.model, mesh, vertices, count)};
            });
+  core.def("mesh_shown", [](const Core& self, py::handle mesh, bool visible, py::handle threads) {
+    const int count = threads_in(threads);
+    return Core{mesh_shown(*self.model, mesh, visible, count)};
+  });
+  core.def("mesh_added",
+           [](const Core& self, py::handle vertices, py::handle faces, py::handle threads) {
+             const int count = threads_in(threads);
+             return Core{mesh_added(*self.model, vertices, faces, count)};
+           });
+  core.def("is_visible",
+           [](const Core& self, py::handle mesh) { return mesh_is_visible(*self.model, mesh); });
   core.def("masks_in",
            [](const Core& self, py::handle masks) { return masks_in(masks, *self.model); });
 }
@@ -108,7 +119,7 @@ void define_members(py::class_<Core>& core) {
         *to++ = v;
     return faces;
   });
-  core.def("meshes", [](const Core& self) { return mesh_count(*self.model); });
+  core.def("meshes", [](const Core& self) { return mesh_count(self.model->scene()); });
   core.def("mesh_of", [](const Core& self, py::handle ids) { return mesh_of(*self.model, ids); });
   core.def("offset", [](const Core& self) { return offset_of(*self.model); });
   core.def("text", [](const Core& self) { return text_of_geometry(*self.model); });

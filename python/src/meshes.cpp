@@ -1,31 +1,17 @@
 #include "src/meshes.hpp"
 
-#include <algorithm>
+#include <array>
 #include <string>
 #include <vector>
 
 namespace grelha::python {
 namespace {
 
-/// One mesh among the arrays of a model.
-struct MeshRange {
-  Object faces;
-  std::uint32_t first_vertex, vertex_count;
-};
-
-MeshRange range_of(const Model& model, std::size_t mesh) {
-  const Triangles& t = model.geometry().triangles;
-  const std::vector<std::uint32_t>& first = model.first_vertices;
-  if (first.empty())
-    return {{0, std::uint32_t(t.size())}, 0, std::uint32_t(t.vertex_count())};
-  return {model.geometry().objects[mesh], first[mesh], first[mesh + 1] - first[mesh]};
-}
-
 /// The faces of one mesh, as indices of its own vertices.
 Geometry faces_of(const Triangles& all, const MeshRange& mesh) {
   const auto own = [&](const std::vector<std::uint32_t>& corner) {
-    const auto from = corner.begin() + mesh.faces.first_triangle;
-    std::vector<std::uint32_t> indices(from, from + mesh.faces.triangle_count);
+    const auto from = corner.begin() + mesh.triangles.first_triangle;
+    std::vector<std::uint32_t> indices(from, from + mesh.triangles.triangle_count);
     for (std::uint32_t& i : indices)
       i -= mesh.first_vertex;
     return indices;
@@ -37,13 +23,12 @@ Geometry faces_of(const Triangles& all, const MeshRange& mesh) {
   return faces;
 }
 
-/// Ids at which meshes begin, and where the last ends.
-std::vector<std::int64_t> begins_of(const Model& model) {
-  std::vector<std::int64_t> begins;
-  for (std::size_t i = 0; i < mesh_count(model); ++i)
-    begins.push_back(model.first_triangle() + range_of(model, i).faces.first_triangle);
-  begins.push_back(model.first_triangle() + std::int64_t(model.geometry().triangles.size()));
-  return begins;
+/// The number of a mesh of a World of triangles alone, which `method` asks for.
+std::size_t mesh_in(py::handle mesh, const Model& model, const char* method) {
+  const int count = int(mesh_count(model.scene()));
+  if (!model.is_one_mesh() || count == 0)
+    throw py::value_error(method + std::string(": expected a World of triangles alone"));
+  return std::size_t(whole_number_in(mesh, "mesh", 0, count - 1));
 }
 
 }  // namespace
@@ -51,29 +36,27 @@ std::vector<std::int64_t> begins_of(const Model& model) {
 ModelParts joined_parts(py::handle vertices, py::handle faces, py::handle given) {
   const py::array_t<std::int64_t> counts = whole_numbers(given, "counts", "(meshes, 2)");
   ModelParts parts = mesh_parts(vertices, faces);
-  parts.first_vertices = {0};
+  parts.scene.first_vertices = {0};
   std::uint32_t first_face = 0;
   for (py::ssize_t i = 0; i < counts.shape(0); ++i) {
     const auto count = std::uint32_t(counts.at(i, 1));
     parts.scene.geometry.objects.push_back({first_face, count});
     first_face += count;
-    parts.first_vertices.push_back(parts.first_vertices.back() + std::uint32_t(counts.at(i, 0)));
+    parts.scene.first_vertices.push_back(parts.scene.first_vertices.back() +
+                                         std::uint32_t(counts.at(i, 0)));
   }
   return parts;
 }
 
 SharedModel mesh_moved(const Model& before, py::handle mesh, py::handle vertices, int threads) {
-  if (!before.is_one_mesh() || mesh_count(before) == 0)
-    throw py::value_error("update_mesh: expected a World of triangles alone");
-  const int which = whole_number_in(mesh, "mesh", 0, int(mesh_count(before)) - 1);
-  const MeshRange range = range_of(before, std::size_t(which));
+  const MeshRange range = mesh_range(before.scene(), mesh_in(mesh, before, "update_mesh"));
   const Triples points = vertices_in(vertices);
   if (points.count() != range.vertex_count)
     wrong_value("vertices",
                 "as many as before, shape (" + std::to_string(range.vertex_count) + ", 3)",
                 text_of(points.full_shape()));
   parts_of(points, faces_of(before.geometry().triangles, range));  // to refuse what is not finite
-  ModelParts parts{before.scene(), before.frame.scale, before.in_double, before.first_vertices};
+  ModelParts parts{before.scene(), before.frame.scale, before.in_double};
   Triangles& t = parts.scene.geometry.triangles;
   std::size_t at = range.first_vertex;
   for (const Float3& p : points.in_frame(before.frame)) {
@@ -81,16 +64,40 @@ SharedModel mesh_moved(const Model& before, py::handle mesh, py::handle vertices
     t.y[at] = p.y;
     t.z[at++] = p.z;
   }
-  return built(std::move(parts), threads, &before, {&range.faces, 1});
+  return built(std::move(parts), threads, &before, {&range.triangles, 1});
 }
 
-std::size_t mesh_count(const Model& model) {
-  return model.first_vertices.empty() ? 1 : model.first_vertices.size() - 1;
+SharedModel mesh_shown(const Model& before, py::handle mesh, bool visible, int threads) {
+  ModelParts parts{before.scene(), before.frame.scale, before.in_double};
+  show_mesh(parts.scene, mesh_in(mesh, before, "set_visible"), visible);
+  return built(std::move(parts), threads, &before);
+}
+
+SharedModel mesh_added(const Model& before, py::handle vertices, py::handle faces, int threads) {
+  if (!before.is_one_mesh())
+    throw py::value_error("add_mesh: expected a World of triangles alone");
+  const ModelParts added = mesh_parts(vertices, faces);
+  const Triples points = vertices_in(vertices);
+  std::vector<float> own;
+  for (const Float3& p : points.in_frame(before.frame))
+    own.insert(own.end(), {p.x, p.y, p.z});
+  const Triangles& t = added.scene.geometry.triangles;
+  std::vector<std::array<std::uint32_t, 3>> corners;
+  for (std::size_t i = 0; i < t.size(); ++i)
+    corners.push_back({t.a[i], t.b[i], t.c[i]});
+  ModelParts parts{before.scene(), before.frame.scale, before.in_double};
+  const Object moved =
+      add_mesh(parts.scene,
+               {PointArray(own.data(), 3 * sizeof(float), points.count(), "vertices"), corners});
+  return built(std::move(parts), threads, &before, {&moved, 1});
+}
+
+bool mesh_is_visible(const Model& model, py::handle mesh) {
+  return mesh_range(model.scene(), mesh_in(mesh, model, "is_visible")).triangles.visible;
 }
 
 py::tuple mesh_of(const Model& model, py::handle given) {
   const py::array_t<std::int64_t> ids = whole_numbers(given, "ids", "(...)");
-  const std::vector<std::int64_t> begins = begins_of(model);
   py::array_t<std::int64_t> mesh(shape_of(ids)), face(shape_of(ids));
   std::int64_t* to_mesh = mesh.mutable_data();
   std::int64_t* to_face = face.mutable_data();
@@ -99,10 +106,10 @@ py::tuple mesh_of(const Model& model, py::handle given) {
       wrong_value("ids",
                   "-1, or ids of " + std::to_string(model.primitives()) + " primitives",
                   std::to_string(id));
-    const auto next = std::upper_bound(begins.begin(), begins.end(), id);
-    const bool is_face = next != begins.begin() && next != begins.end();
-    *to_mesh++ = is_face ? next - begins.begin() - 1 : -1;
-    *to_face++ = is_face ? id - next[-1] : -1;
+    const MeshFace found = mesh_face(model.scene(), std::uint32_t(id));  // -1: kNoPrimitive
+    const bool is_face = found.mesh != kNoPrimitive;
+    *to_mesh++ = is_face ? std::int64_t(found.mesh) : -1;
+    *to_face++ = is_face ? std::int64_t(found.face) : -1;
   }
   if (ids.ndim() == 0)
     return py::make_tuple(*mesh.data(), *face.data());

@@ -1,6 +1,7 @@
 #pragma once
 // Several meshes in one Model.
 
+#include "grelha/meshes.hpp"
 #include "src/model.hpp"
 
 namespace grelha::python {
@@ -11,7 +12,12 @@ ModelParts joined_parts(py::handle vertices, py::handle faces, py::handle counts
 /// TypeError and ValueError that name the argument.
 SharedModel mesh_moved(const Model& before, py::handle mesh, py::handle vertices, int threads);
 
-std::size_t mesh_count(const Model& model);
+/// The same model where one mesh is hidden, or shown again.
+SharedModel mesh_shown(const Model& before, py::handle mesh, bool visible, int threads);
+/// The same model with a mesh more, in the frame of before.
+SharedModel mesh_added(const Model& before, py::handle vertices, py::handle faces, int threads);
+
+bool mesh_is_visible(const Model& model, py::handle mesh);
 /// The mesh of each primitive, and its row among the mesh's faces; -1 and -1 for what is no face.
 py::tuple mesh_of(const Model& model, py::handle ids);
 

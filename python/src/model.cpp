@@ -111,7 +111,7 @@ ModelParts moved_parts(const Model& before, py::handle vertices, py::handle radi
   same.triangles.c = old.triangles.c;
   same.objects = old.objects;
   ModelParts parts = parts_of(points, std::move(same));
-  parts.first_vertices = before.first_vertices;
+  parts.scene.first_vertices = before.scene().first_vertices;
   return parts;
 }
 

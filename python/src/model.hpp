@@ -18,8 +18,6 @@ struct ModelParts {
   OffsetScene scene{};
   double scale = 1;        ///< of the frame in which the scene lies
   bool in_double = false;  ///< points are given back in double
-  /// of each mesh, and the number of vertices: geometry.objects has their faces; empty: one mesh
-  std::vector<std::uint32_t> first_vertices{};
 };
 
 /// Immutable, so queries on several threads may share it.
@@ -27,7 +25,6 @@ struct Model {
   OwningWorld owner;
   Frame frame;  ///< in which the scene lies
   bool in_double;
-  std::vector<std::uint32_t> first_vertices;  ///< see ModelParts
 
   /// Shares grids with a model `before`, unless it is null, of which some triangles moved.
   Model(ModelParts parts,
@@ -37,8 +34,7 @@ struct Model {
       : owner(before ? OwningWorld(std::move(parts.scene), options, before->owner, moved)
                      : OwningWorld(std::move(parts.scene), options)),
         frame{scene().offset, parts.scale},
-        in_double(parts.in_double),
-        first_vertices(std::move(parts.first_vertices)) {}
+        in_double(parts.in_double) {}
   const World& world() const { return owner.world(); }
   const OffsetScene& scene() const { return owner.scene(); }
   const Geometry& geometry() const { return scene().geometry; }

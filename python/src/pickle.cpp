@@ -48,17 +48,18 @@ py::tuple state_of(const Model& model) {
       arrays[name] = py::array_t<T>(py::ssize_t(values.size()), values.data());
   });
   const std::vector<Object>& objects = model.geometry().objects;
-  static_assert(sizeof(Object) == 2 * sizeof(std::uint32_t));
-  const auto* const ranges = reinterpret_cast<const std::uint32_t*>(objects.data());
+  std::vector<std::uint32_t> ranges;
+  for (const Object& o : objects)
+    ranges.insert(ranges.end(), {o.first_triangle, o.triangle_count, o.visible ? 1u : 0u});
+  const std::vector<std::uint32_t>& first = model.scene().first_vertices;
   const auto& offset = model.frame.offset;
   return py::make_tuple(kVersion,
                         arrays,
-                        py::array_t<std::uint32_t>(2 * py::ssize_t(objects.size()), ranges),
+                        py::array_t<std::uint32_t>(py::ssize_t(ranges.size()), ranges.data()),
                         py::make_tuple(offset[0], offset[1], offset[2]),
                         model.frame.scale,
                         model.in_double,
-                        py::array_t<std::uint32_t>(py::ssize_t(model.first_vertices.size()),
-                                                   model.first_vertices.data()));
+                        py::array_t<std::uint32_t>(py::ssize_t(first.size()), first.data()));
 }
 
 ModelParts parts_of_state(const py::tuple& state) {
@@ -81,15 +82,17 @@ ModelParts parts_of_state(const py::tuple& state) {
     throw py::value_error("state: expected fewer materials");
   parts.scene.materials.resize(materials + std::size_t{1});
   const std::vector<std::uint32_t> ranges = vector_of<std::uint32_t>(state[2]);
-  for (std::size_t i = 0; i + 1 < ranges.size(); i += 2)
-    g.objects.push_back({ranges[i], ranges[i + 1]});
+  if (ranges.size() % 3 != 0)
+    throw py::value_error("state: expected three numbers of each mesh");
+  for (std::size_t i = 0; i < ranges.size(); i += 3)
+    g.objects.push_back({ranges[i], ranges[i + 1], ranges[i + 2] != 0});
   const auto offset = state[3].cast<py::tuple>();
   for (std::size_t a = 0; a < 3; ++a)
     parts.scene.offset[a] = offset[a].cast<double>();
   parts.scale = state[4].cast<double>();
   parts.in_double = state[5].cast<bool>();
-  parts.first_vertices = vector_of<std::uint32_t>(state[6]);
-  const std::vector<std::uint32_t>& first = parts.first_vertices;
+  parts.scene.first_vertices = vector_of<std::uint32_t>(state[6]);
+  const std::vector<std::uint32_t>& first = parts.scene.first_vertices;
   if (!first.empty() &&
       (first.size() != g.objects.size() + 1 || first.front() != 0 ||
        first.back() != g.triangles.vertex_count() || !std::is_sorted(first.begin(), first.end())))

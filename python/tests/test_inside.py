@@ -93,6 +93,24 @@ class Rules(unittest.TestCase):
         np.testing.assert_array_equal(both.contains(self.points, inside="nonzero"), one | other)
         np.testing.assert_array_equal(both.contains(self.points), one ^ other)
 
+    def test_badly_wound(self):
+        faces = self.faces.copy()
+        faces[7] = faces[7, ::-1]
+        world = grelha.World(self.vertices, faces)
+        for ask in (world.contains, world.signed_distance):
+            with self.assertRaisesRegex(ValueError, "inside: expected an oriented mesh, found 3 "
+                                        "inconsistent edges, the first from vertex"):
+                ask(self.points, inside="nonzero")
+        right = grelha.World(self.vertices, self.faces)
+        np.testing.assert_array_equal(world.contains(self.points), right.contains(self.points))
+        # the other side of every face: closed as before, wound the other way
+        turned = grelha.World(self.vertices, self.faces[:, ::-1])
+        for rule in ("closed", "odd", "nonzero", "winding"):
+            np.testing.assert_array_equal(turned.contains(self.points, inside=rule),
+                                          right.contains(self.points))
+        np.testing.assert_allclose(turned.winding_number(self.points, 1e-6),
+                                   -right.winding_number(self.points, 1e-6), atol=2e-6)
+
     def test_far_away(self):
         far = np.array([4e6, 5e6, 300.])
         world = grelha.World(self.vertices + far, without(self.vertices, self.faces, 0.8))

@@ -173,6 +173,64 @@ class Meshes(unittest.TestCase):
         self.assertEqual(world.mesh_of(world.closest(*down, mask=255 - 2).id)[0], 0)
         self.same(world, grelha.World.of([*scene()[:1], (BALL * 2, BALL_FACES), *scene()[2:]]))
 
+    def test_hidden_meshes_are_not_there(self):
+        world = grelha.World.of(scene())
+        down = (0, 0, 9), (0, 0, -1)
+        for mesh in range(5):
+            self.assertTrue(world.is_visible(mesh))
+            left = [(v, f if i != mesh else np.zeros((0, 3), int))
+                    for i, (v, f) in enumerate(scene())]
+            other = grelha.World.of(left)
+            world.set_visible(mesh, False)
+            self.assertFalse(world.is_visible(mesh))
+            ids, others = world.closest(*rays(3000, 5)).id, other.closest(*rays(3000, 5)).id
+            for got, expected in zip(world.mesh_of(ids), other.mesh_of(others)):
+                np.testing.assert_array_equal(got, expected)
+            self.assertEqual(world.check()[:3], other.check()[:3])
+            points = np.float32([[0, 0, 0], [3, 0, 0], [0, -3, 0]])
+            np.testing.assert_array_equal(world.contains(points, inside="winding"),
+                                          other.contains(points, inside="winding"))
+            copied = pickle.loads(pickle.dumps(world))
+            self.assertFalse(copied.is_visible(mesh))
+            self.same(copied, world)
+            world.set_visible(mesh, True)
+            self.same(world, grelha.World.of(scene()))
+        world.set_visible(1, False)
+        world.update_mesh(1, BALL * 2)
+        world.update_mesh(2, BALL + np.float32([3, 1, 0]))
+        self.assertEqual(world.mesh_of(world.closest(*down).id)[0], 0)
+        world.set_visible(1, True)
+        self.same(world, grelha.World.of([*scene()[:1], (BALL * 2, BALL_FACES),
+                                          (BALL + np.float32([3, 1, 0]), BALL_FACES),
+                                          *scene()[3:]]))
+        with self.assertRaisesRegex(ValueError, "mesh: expected 0 to 4, found 5"):
+            world.set_visible(5, True)
+        with self.assertRaisesRegex(ValueError, "set_visible: expected a World of triangles alone"):
+            grelha.World.spheres(CUBE, 1).set_visible(0, False)
+
+    def test_added_meshes(self):
+        for far in (np.zeros(3, np.float32), FAR):
+            meshes = [(v + far, f) for v, f in scene()]
+            world = grelha.World.of(meshes[:3])
+            offset = world.offset.tolist()
+            world.masks = np.ones(len(world.faces), int)
+            self.assertEqual(world.add_mesh(*meshes[3]), 3)
+            self.assertEqual(world.add_mesh(*meshes[4]), 4)
+            self.assertEqual((world.meshes, world.offset.tolist()), (5, offset))
+            self.same(world, grelha.World.of(meshes), far)
+            self.assertEqual(world.masks[-13:].tolist(), [1] + [255] * 12)
+            broken = np.concatenate([CUBE[:7] + far, [[0, 0, np.nan]]])
+            with self.assertRaisesRegex(ValueError, r"vertices: expected finite .*nan at \(7, 2\)"):
+                world.add_mesh(broken, CUBE_FACES)
+            with self.assertRaisesRegex(ValueError, "faces: expected indices of 7 vertices"):
+                world.add_mesh(CUBE[:7] + far, CUBE_FACES)
+            self.same(world, grelha.World.of(meshes), far)
+        one = grelha.World(CUBE, CUBE_FACES)
+        self.assertEqual(one.add_mesh(CUBE + 5, CUBE_FACES), 1)
+        self.same(one, grelha.World.of([(CUBE, CUBE_FACES), (CUBE + 5, CUBE_FACES)]))
+        with self.assertRaisesRegex(ValueError, "add_mesh: expected a World of triangles alone"):
+            grelha.World.spheres(CUBE, 1).add_mesh(CUBE, CUBE_FACES)
+
     def test_copies_and_pickles_stay_meshes(self):
         world = grelha.World.of(scene())
         world.update_mesh(1, BALL * 2)

@@ -67,7 +67,8 @@ class Pickles(unittest.TestCase):
         short, beyond = dict(state[1]), dict(state[1])
         short["x"], beyond["a"] = short["x"][:3], beyond["a"] + 100
         broken += [(1, short, *state[2:]), (1, beyond, *state[2:]), None, 3,
-                   (*state[:2], np.uint32([5, 1000]), *state[3:]), (*state[:3], (1.0,), *state[4:])]
+                   (*state[:2], np.uint32([5, 1000, 1]), *state[3:]),
+                   (*state[:2], np.uint32([0, 12]), *state[3:]), (*state[:3], (1.0,), *state[4:])]
         for bad in broken:
             with self.assertRaises((ValueError, TypeError, RuntimeError, IndexError)):
                 restored(cls, bad, None)

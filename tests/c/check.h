@@ -30,6 +30,8 @@ void test_closest_points(void);
 void test_signed_distances(void);
 void test_inside_rules(void);
 void test_mesh_check(void);
+void test_meshes(void);
+void test_mesh_errors(void);
 void test_misuse(void);
 void test_errors(void);
 void test_memory(void);

@@ -19,6 +19,8 @@ static const struct {
     {"signed_distances", test_signed_distances},
     {"inside_rules", test_inside_rules},
     {"mesh_check", test_mesh_check},
+    {"meshes", test_meshes},
+    {"mesh_errors", test_mesh_errors},
     {"misuse", test_misuse},
     {"errors", test_errors},
     {"memory", test_memory},

@@ -118,6 +118,18 @@ void test_inside_rules(void) {
   CHECK_OK(grelha_contains(world, points, kStride, 2, GRELHA_NONZERO, inside, 1));
   CHECK(inside[0] == 1 && inside[1] == 0);
   grelha_free(world);
+
+  // the first face turned over
+  memcpy(twice, cube_indices, sizeof cube_indices);
+  twice[0] = cube_indices[1];
+  twice[1] = cube_indices[0];
+  CHECK_OK(grelha_new_triangles(cube_corners, 12, kCorners, twice, kFaces, 1, &world));
+  CHECK_ERROR(grelha_contains(world, points, kStride, 1, GRELHA_NONZERO, inside, 1),
+              GRELHA_NOT_CLOSED,
+              "inside: expected an oriented mesh, found 3 inconsistent edges");
+  CHECK_OK(grelha_contains(world, points, kStride, 2, GRELHA_CLOSED, inside, 1));
+  CHECK(inside[0] == 1 && inside[1] == 0);
+  grelha_free(world);
 }
 
 void test_mesh_check(void) {

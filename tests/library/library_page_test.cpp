@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <limits>
 #include <optional>
@@ -15,6 +16,7 @@ namespace page {
 }  // namespace page
 
 #ifdef GRELHA_C
+#include <grelha.h>
 extern "C" int depths(const float* vertices,
                       size_t vertex_count,
                       const uint32_t* indices,
@@ -22,6 +24,13 @@ extern "C" int depths(const float* vertices,
                       const float* points,
                       size_t count,
                       float* t);
+extern "C" int meshes_below(const grelha_mesh* meshes,
+                            size_t count,
+                            size_t which,
+                            const grelha_mesh* moved,
+                            const float* points,
+                            size_t point_count,
+                            uint32_t* mesh);
 #endif
 
 namespace grelha {
@@ -112,6 +121,22 @@ TEST_F(LibraryPage, MovingAnObject) {
   EXPECT_EQ(closest(whole, down).t, 2);
 }
 
+TEST_F(LibraryPage, SeveralMeshes) {
+  const std::vector<Float3> low{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
+  const std::vector<Float3> high{{-1, -1, 1}, {1, -1, 1}, {0, 1, 1}};
+  const std::vector<std::array<std::uint32_t, 3>> face{{0, 1, 2}};
+  const MeshArrays meshes[] = {{PointArray(std::span(low)), face},
+                               {PointArray(std::span(high)), face}};
+  OwningWorld owner(scene_of(meshes), {});
+  const Ray ray{.org = {0, 0, 5}, .dir = {0, 0, -1}};
+  EXPECT_EQ(page::mesh_at(owner, ray), (MeshFace{1, 0}));
+  EXPECT_EQ(page::mesh_behind(owner, 1, ray), (MeshFace{0, 0}));
+  EXPECT_EQ(page::mesh_at(owner, ray), (MeshFace{1, 0}));
+  const std::vector<Float3> above{{-1, -1, 2}, {1, -1, 2}, {0, 1, 2}};
+  page::move_one(owner, 0, above);
+  EXPECT_EQ(page::mesh_at(owner, ray), (MeshFace{0, 0}));
+}
+
 TEST_F(LibraryPage, Threads) {
   std::atomic<double> done = 0;
   std::atomic<bool> cancelled = false;
@@ -131,6 +156,20 @@ TEST_F(LibraryPage, FromC) {
   EXPECT_EQ(depths(corners, 3, indices, 1, points, 3, t.data()), 0);
   EXPECT_EQ(t, (std::vector{2.f, 3.f, std::numeric_limits<float>::infinity()}));
   EXPECT_NE(depths(corners, 3, indices + 1, 1, points, 3, t.data()), 0);
+}
+
+TEST_F(LibraryPage, SeveralMeshesFromC) {
+  const float low[] = {-1, -1, 0, 1, -1, 0, 0, 1, 0}, high[] = {-1, -1, 1, 1, -1, 1, 0, 1, 1};
+  const float aside[] = {4, -1, 1, 6, -1, 1, 5, 1, 1};
+  const float points[] = {0, 0, 2, 5, 0, 3, 9, 9, 9};
+  const std::uint32_t face[] = {0, 1, 2};
+  grelha_mesh meshes[] = {{low, nullptr, 12, 3, face, 1}, {high, nullptr, 12, 3, face, 1}};
+  const grelha_mesh moved{aside, nullptr, 12, 3, nullptr, 0};
+  std::vector<std::uint32_t> mesh(3);
+  EXPECT_EQ(meshes_below(meshes, 2, 1, &moved, points, 3, mesh.data()), 0);
+  EXPECT_EQ(mesh, (std::vector{0u, 1u, GRELHA_NONE}));
+  meshes[1].indices = nullptr;
+  EXPECT_NE(meshes_below(meshes, 2, 1, &moved, points, 3, mesh.data()), 0);
 }
 #endif
 

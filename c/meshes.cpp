@@ -1,0 +1,139 @@
+#include "grelha/meshes.hpp"
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "c/world.hpp"
+
+namespace grelha::c {
+namespace {
+
+/// The arrays of a mesh. Throws std::invalid_argument and TooMany.
+MeshArrays arrays_of(const grelha_mesh& mesh) {
+  expect_at_most(mesh.triangle_count, kMostPrimitives, "triangle_count");
+  expect_at_most(mesh.vertex_count, kMostVertices, "vertex_count");
+  if (mesh.triangle_count > 0)
+    expect_there(mesh.indices, "indices");
+  if (mesh.vertices && mesh.doubles)
+    throw std::invalid_argument("vertices: expected floats or doubles, found both");
+  const auto* const faces = reinterpret_cast<const std::array<std::uint32_t, 3>*>(mesh.indices);
+  return {mesh.doubles ? PointArray(mesh.doubles, mesh.stride, mesh.vertex_count, "vertices")
+                       : PointArray(mesh.vertices, mesh.stride, mesh.vertex_count, "vertices"),
+          {faces, mesh.triangle_count}};
+}
+
+/// The same of mesh `number`, which errors name.
+MeshArrays arrays_of(const grelha_mesh& mesh, std::size_t number) {
+  const std::string name = "mesh " + std::to_string(number) + ": ";
+  try {
+    return arrays_of(mesh);
+  } catch (const std::invalid_argument& bad) {
+    throw std::invalid_argument(name + bad.what());
+  } catch (const TooMany& bad) {
+    throw TooMany(name + bad.what());
+  }
+}
+
+OffsetScene scene_of_meshes(const grelha_mesh* meshes, std::size_t count) {
+  if (count > 0)
+    expect_there(meshes, "meshes");
+  std::vector<MeshArrays> arrays;
+  std::size_t vertices = 0, triangles = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    arrays.push_back(arrays_of(meshes[i], i));
+    expect_at_most(vertices += meshes[i].vertex_count, kMostVertices - 2, "vertices of all");
+    expect_at_most(triangles += meshes[i].triangle_count, kMostPrimitives, "triangles of all");
+  }
+  return scene_of(arrays);
+}
+
+/// Changes the scene of a world: edit(scene) returns what moved, or an empty range. Grids of the
+/// rest are shared.
+template <class Edit>
+grelha_status change(grelha_world* world, int threads, const Edit& edit) noexcept {
+  return guarded([&] {
+    expect_there(world, "world");
+    const BuildOptions options{.threads = expect_threads(threads)};
+    if (world->scene().geometry.spheres.size() > 0)
+      refuse("world", "triangles", "spheres");
+    OffsetScene scene = world->scene();
+    const Object moved = edit(scene);
+    world->replace(std::move(scene), options, {&moved, 1});
+  });
+}
+
+}  // namespace
+}  // namespace grelha::c
+
+grelha_status grelha_new_meshes(const grelha_mesh* meshes,
+                                size_t count,
+                                int threads,
+                                grelha_world** world) {
+  return grelha::c::make_world(
+      world, threads, [&] { return grelha::c::scene_of_meshes(meshes, count); });
+}
+
+grelha_status grelha_mesh_of(const grelha_world* world,
+                             const uint32_t* ids,
+                             size_t count,
+                             uint32_t* mesh,
+                             uint32_t* triangle) {
+  using namespace grelha::c;
+  return guarded([&] {
+    expect_there(world, "world");
+    if (count > 0)
+      expect_there(ids, "ids");
+    const grelha::Geometry& g = world->scene().geometry;
+    const std::size_t all = g.spheres.size() + g.triangles.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      if (ids[i] >= all && ids[i] != GRELHA_NONE)
+        refuse("ids", "ids below " + std::to_string(all), std::to_string(ids[i]));
+      const grelha::MeshFace found = grelha::mesh_face(world->scene(), ids[i]);
+      if (mesh)
+        mesh[i] = found.mesh;
+      if (triangle)
+        triangle[i] = found.face;
+    }
+  });
+}
+
+grelha_status grelha_update_mesh(grelha_world* world,
+                                 size_t number,
+                                 const grelha_mesh* mesh,
+                                 int threads) {
+  using namespace grelha::c;
+  return change(world, threads, [&](grelha::OffsetScene& scene) {
+    expect_there(mesh, "mesh");
+    return move_mesh(scene,
+                     number,
+                     arrays_of({.vertices = mesh->vertices,
+                                .doubles = mesh->doubles,
+                                .stride = mesh->stride,
+                                .vertex_count = mesh->vertex_count,
+                                .indices = nullptr,
+                                .triangle_count = 0})
+                         .vertices);
+  });
+}
+
+grelha_status grelha_add_mesh(grelha_world* world,
+                              const grelha_mesh* mesh,
+                              int threads,
+                              size_t* number) {
+  using namespace grelha::c;
+  const grelha_status status = change(world, threads, [&](grelha::OffsetScene& scene) {
+    expect_there(mesh, "mesh");
+    return add_mesh(scene, arrays_of(*mesh));
+  });
+  if (status == GRELHA_OK && number)
+    *number = grelha::mesh_count(world->scene()) - 1;
+  return status;
+}
+
+grelha_status grelha_set_visible(grelha_world* world, size_t number, int visible, int threads) {
+  return grelha::c::change(world, threads, [&](grelha::OffsetScene& scene) {
+    grelha::show_mesh(scene, number, visible != 0);
+    return grelha::Object{};
+  });
+}
