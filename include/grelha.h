@@ -21,7 +21,6 @@
 // Errors    Functions that can fail return a grelha_status. They then say why by
 //           grelha_last_error(). No exception leaves a function. Nothing is printed.
 // Answers   They go to arrays of the caller. After an error their contents are unspecified.
-
 #include <stddef.h>
 #include <stdint.h>
 
@@ -219,8 +218,8 @@ GRELHA_API grelha_status grelha_new_meshes(const grelha_mesh* meshes,
                                            grelha_world** world);
 
 /// Finds whose triangles [count] ids are: mesh[i] is the number of the mesh, triangle[i] that of
-/// the triangle in it; each may be null. Both are GRELHA_NONE for GRELHA_NONE and for spheres. Fails
-/// with GRELHA_INVALID for null, and for an id that no primitive has.
+/// the triangle in it; each may be null. Both are GRELHA_NONE for GRELHA_NONE and for spheres.
+/// Fails with GRELHA_INVALID for null, and for an id that no primitive has.
 GRELHA_API grelha_status grelha_mesh_of(const grelha_world* world,
                                         const uint32_t* ids,
                                         size_t count,
@@ -228,9 +227,9 @@ GRELHA_API grelha_status grelha_mesh_of(const grelha_world* world,
                                         uint32_t* triangle);
 
 /// Moves the vertices of one mesh, as many as before; the indices are not read. Floats count from
-/// grelha_offset(), doubles from 0. Answers are those of a new world. Mostly no grid is built but
-/// its own. Errors are those of the function that made the world, and GRELHA_INVALID for a number
-/// that no mesh has and for worlds of spheres. The world is then as it was before.
+/// grelha_offset(), doubles from 0. Answers are those of a new world. Mostly its grid alone is built.
+/// Errors are those of the function that made the world, and GRELHA_INVALID for a number that no
+/// mesh has and for worlds of spheres. The world is then as it was before.
 GRELHA_API grelha_status grelha_update_mesh(grelha_world* world,
                                             size_t number,
                                             const grelha_mesh* mesh,

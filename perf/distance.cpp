@@ -1,5 +1,6 @@
-// Closest points of meshes, beside Embree's point query and CGAL's AABB tree. One thread; the
-// methods take turns, and every answer is compared.
+// Closest points of meshes, beside Embree's point query and CGAL's AABB tree, and insides, beside
+// CGAL's Side_of_triangle_mesh and VTK's vtkSelectEnclosedPoints and vtkImplicitPolyDataDistance. One
+// thread; the methods take turns, and every answer is compared.
 //
 // distance [--scene NAME]... [--points N] [--rounds N]
 //
@@ -245,6 +246,25 @@ bool table(const std::string& name, const Options& o) {
   return right;
 }
 
+/// Insides of points beside the surface and in a lattice, of meshes that VTK can finish.
+bool insides(const std::string& name, const Options& o) {
+  constexpr std::size_t kMostTriangles = 300'000;
+  const Scene scene = scene_of(name);
+  const Triangles& t = scene.geometry.triangles;
+  if (t.size() > kMostTriangles)
+    return true;
+  const std::string shown = std::filesystem::path(name).stem();
+  const std::size_t count = std::max<std::size_t>(1, o.points / 4);
+  bool right = true;
+  for (const double by : {.01, .1})
+    right &= print_insides(shown,
+                           scene,
+                           by == .01 ? ".01 sizes" : ".1 sizes",
+                           beside_surface(t, by * Bounds(t).size(), count),
+                           o.rounds);
+  return print_insides(shown, scene, "a lattice", lattice(Bounds(t), count), o.rounds) && right;
+}
+
 bool set_option(const std::string& word, const char* value, Options& o) {
   const double number = std::atof(value);
   if (word == "--scene")
@@ -281,6 +301,9 @@ int main(int argc, char** argv) {
   const Triangles none;
   if (embree_name().empty())
     std::fprintf(stderr, "skipped: Embree is not here\n");
+#ifndef GRELHA_VTK
+  std::fprintf(stderr, "skipped: VTK is not here (Debian: libvtk9-dev)\n");
+#endif
 #ifndef GRELHA_CGAL
   std::fprintf(stderr, "skipped: CGAL is not here (Debian: libcgal-dev)\n");
 #endif
@@ -291,5 +314,11 @@ int main(int argc, char** argv) {
   bool right = true;
   for (const std::string& scene : o.scenes)
     right &= table(scene, o);
+  std::printf(
+      "\n| scene | points | closed | winding | number to .01 | to .001 | signed distance | CGAL "
+      "inside | VTK inside | VTK distance | VTK others |\n"
+      "|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n");
+  for (const std::string& scene : o.scenes)
+    right &= insides(scene, o);
   return right ? 0 : 1;
 }

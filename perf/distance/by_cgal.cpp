@@ -2,12 +2,17 @@
 
 #ifdef GRELHA_CGAL
 #include <cmath>
+#include <map>
+#include <tuple>
 #include <vector>
 
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
 #include <CGAL/AABB_triangle_primitive.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Side_of_triangle_mesh.h>
 #include <CGAL/Simple_cartesian.h>
+#include <CGAL/Surface_mesh.h>
 
 namespace grelha::perf {
 namespace {
@@ -56,10 +61,57 @@ std::unique_ptr<OtherTree> make_cgal_tree(const Triangles& t) {
   return std::make_unique<Tree>(t);
 }
 
+namespace {
+
+class Side : public OtherInside {
+  using Exact = CGAL::Exact_predicates_inexact_constructions_kernel;
+  using Mesh = CGAL::Surface_mesh<Exact::Point_3>;
+
+ public:
+  /// Corners at one place become one vertex.
+  explicit Side(const Triangles& t) {
+    std::map<std::tuple<float, float, float>, Mesh::Vertex_index> places;
+    const auto place = [&](std::uint32_t v) {
+      const auto [at, is_new] = places.try_emplace({t.x[v], t.y[v], t.z[v]});
+      if (is_new)
+        at->second = mesh_.add_vertex({t.x[v], t.y[v], t.z[v]});
+      return at->second;
+    };
+    for (std::size_t i = 0; i < t.size(); ++i) {
+      const auto a = place(t.a[i]), b = place(t.b[i]), c = place(t.c[i]);
+      if (a != b && b != c && c != a)
+        is_taken_ &= mesh_.add_face(a, b, c) != Mesh::null_face();
+    }
+    if (is_taken_)
+      side_ = std::make_unique<CGAL::Side_of_triangle_mesh<Mesh, Exact>>(mesh_);
+  }
+  /// CGAL's meshes are manifolds.
+  bool is_taken() const { return is_taken_; }
+  void contains(std::span<const Float3> points, std::span<std::uint8_t> inside) const override {
+    for (std::size_t i = 0; i < points.size(); ++i)
+      inside[i] = (*side_)({points[i].x, points[i].y, points[i].z}) == CGAL::ON_BOUNDED_SIDE;
+  }
+
+ private:
+  Mesh mesh_;
+  bool is_taken_ = true;
+  std::unique_ptr<CGAL::Side_of_triangle_mesh<Mesh, Exact>> side_;
+};
+
+}  // namespace
+
+std::unique_ptr<OtherInside> make_cgal_inside(const Triangles& t) {
+  auto side = std::make_unique<Side>(t);
+  return side->is_taken() ? std::move(side) : nullptr;
+}
+
 }  // namespace grelha::perf
 #else
 namespace grelha::perf {
 std::unique_ptr<OtherTree> make_cgal_tree(const Triangles&) {
+  return nullptr;
+}
+std::unique_ptr<OtherInside> make_cgal_inside(const Triangles&) {
   return nullptr;
 }
 }  // namespace grelha::perf
