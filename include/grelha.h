@@ -227,7 +227,7 @@ GRELHA_API grelha_status grelha_mesh_of(const grelha_world* world,
                                         uint32_t* triangle);
 
 /// Moves the vertices of one mesh, as many as before; the indices are not read. Floats count from
-/// grelha_offset(), doubles from 0. Answers are those of a new world. Mostly its grid alone is built.
+/// grelha_offset(), doubles from 0. Answers are those of a new world. Grids of others mostly stay.
 /// Errors are those of the function that made the world, and GRELHA_INVALID for a number that no
 /// mesh has and for worlds of spheres. The world is then as it was before.
 GRELHA_API grelha_status grelha_update_mesh(grelha_world* world,

@@ -1,6 +1,6 @@
 // Closest points of meshes, beside Embree's point query and CGAL's AABB tree, and insides, beside
-// CGAL's Side_of_triangle_mesh and VTK's vtkSelectEnclosedPoints and vtkImplicitPolyDataDistance. One
-// thread; the methods take turns, and every answer is compared.
+// CGAL's Side_of_triangle_mesh and VTK's vtkSelectEnclosedPoints and vtkImplicitPolyDataDistance.
+// One thread; the methods take turns, and answers are compared.
 //
 // distance [--scene NAME]... [--points N] [--rounds N]
 //

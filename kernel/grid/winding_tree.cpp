@@ -1,6 +1,7 @@
 #include "kernel/grid/winding_tree.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -26,12 +27,54 @@ constexpr int kThird[10][3] = {{0, 0, 0},
                                {0, 2, 2},
                                {1, 2, 2},
                                {0, 1, 2}};
+constexpr int kFourth[15][4] = {{0, 0, 0, 0},
+                                {1, 1, 1, 1},
+                                {2, 2, 2, 2},
+                                {0, 0, 0, 1},
+                                {0, 0, 0, 2},
+                                {0, 1, 1, 1},
+                                {1, 1, 1, 2},
+                                {0, 2, 2, 2},
+                                {1, 2, 2, 2},
+                                {0, 0, 1, 1},
+                                {0, 0, 2, 2},
+                                {1, 1, 2, 2},
+                                {0, 0, 1, 2},
+                                {0, 1, 1, 2},
+                                {0, 1, 2, 2}};
+/// Of equal components of fourth.
+constexpr double kFourthTimes[15] = {1, 1, 1, 4, 4, 4, 4, 4, 4, 6, 6, 6, 12, 12, 12};
+/// Where a component of third or fourth stands, by its axes in any order, each two bits.
+template <std::size_t kCount, int kRank>
+constexpr auto places_of(const int (&all)[kCount][kRank]) {
+  std::array<std::uint8_t, std::size_t{1} << (2 * kRank)> places{};
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    int of[kRank];
+    for (int k = 0; k < kRank; ++k)
+      of[k] = static_cast<int>(i >> (2 * k)) & 3;
+    std::sort(of, of + kRank);
+    for (std::size_t at = 0; at < kCount; ++at)
+      if (std::equal(of, of + kRank, all[at]))
+        places[i] = static_cast<std::uint8_t>(at);
+  }
+  return places;
+}
+constexpr auto kThirdPlaces = places_of(kThird);
+constexpr auto kFourthPlaces = places_of(kFourth);
+constexpr std::size_t third_at(int i, int j, int k) {
+  return kThirdPlaces[static_cast<std::size_t>(i | j << 2 | k << 4)];
+}
+constexpr std::size_t fourth_at(int i, int j, int k, int l) {
+  return kFourthPlaces[static_cast<std::size_t>(i | j << 2 | k << 4 | l << 6)];
+}
 /// How often a term stands in second(r, r) and third(r, r, r).
 constexpr double kSecondTimes[6] = {1, 1, 1, 2, 2, 2};
 constexpr double kThirdTimes[10] = {1, 1, 1, 3, 3, 3, 3, 3, 3, 6};
 /// Of the derivatives of r / |r|^3: -3 r r / |r|^5, half of 15 r r r / |r|^7.
 constexpr double kOfSecond = -3;
 constexpr double kOfThird = 7.5;
+/// More than the root of 24 * 105 over 6, which docs/numerics.md derives.
+constexpr double kOfFourth = 8.3667;
 
 struct Extent {
   double lo[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, hi[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
@@ -58,7 +101,7 @@ struct Cluster {
   Extent box;
   double center[3] = {}, radius = 0;
   double area = 0, offset[3] = {}, spread = 0;  ///< sums of 1, y and y y, of the area
-  double normal[3] = {}, second[6] = {}, third[10] = {};
+  double normal[3] = {}, second[6] = {}, third[10] = {}, fourth[15] = {};
 
   void set_center() {
     for (int a = 0; a < 3; ++a)
@@ -100,6 +143,16 @@ struct Cluster {
       const auto [i, j, k] = kThird[m];
       third[m] += (n[i] * of_two(j, k) + n[j] * of_two(i, k) + n[k] * of_two(i, j)) / 3;
     }
+    double of_three[10];  // the mean of y y y
+    for (int m = 0; m < 10; ++m) {
+      const auto [i, j, k] = kThird[m];
+      double sum = 27 * middle[i] * middle[j] * middle[k];
+      for (const auto& p : v)
+        sum += 3 * (p[i] * p[j] * middle[k] + p[i] * p[k] * middle[j] + p[j] * p[k] * middle[i]) +
+               2 * p[i] * p[j] * p[k];
+      of_three[m] = sum / 60;
+    }
+    add_fourth(n, of_three);
   }
 
   /// Adds a cluster of another center: its places are s further away.
@@ -124,6 +177,18 @@ struct Cluster {
       third[m] += o.third[m] + 2 * (two(i, j) * s[k] + two(i, k) * s[j] + two(j, k) * s[i]) / 3 +
                   (n[i] * s[j] * s[k] + n[j] * s[i] * s[k] + n[k] * s[i] * s[j]) / 3;
     }
+    double cubes[10];
+    for (int m = 0; m < 10; ++m)
+      cubes[m] = s[kThird[m][0]] * s[kThird[m][1]] * s[kThird[m][2]];
+    add_fourth(o.normal, cubes);
+    const double thrice[3] = {3 * s[0], 3 * s[1], 3 * s[2]};
+    add_fourth(thrice, o.third);
+    for (int m = 0; m < 15; ++m) {
+      const auto [i, j, k, l] = kFourth[m];
+      fourth[m] += o.fourth[m] + .5 * (s[i] * s[j] * two(k, l) + s[i] * s[k] * two(j, l) +
+                                       s[i] * s[l] * two(j, k) + s[j] * s[k] * two(i, l) +
+                                       s[j] * s[l] * two(i, k) + s[k] * s[l] * two(i, j));
+    }
   }
 
   /// Ends the sums: takes out what is the same in all directions, whose solid angle is 0.
@@ -132,14 +197,7 @@ struct Cluster {
     const double mean = (second[0] + second[1] + second[2]) / 3;
     for (int a = 0; a < 3; ++a)
       second[a] -= mean;
-    const auto three = [&](int i, int j, int k) {
-      int of[3] = {i, j, k};
-      std::sort(of, of + 3);
-      for (int m = 0; m < 10; ++m)
-        if (std::equal(of, of + 3, kThird[m]))
-          return third[m];
-      return 0.;
-    };
+    const auto three = [&](int i, int j, int k) { return third[third_at(i, j, k)]; };
     double along[3];
     for (int a = 0; a < 3; ++a)
       along[a] = (three(0, 0, a) + three(1, 1, a) + three(2, 2, a)) / 5;
@@ -147,12 +205,18 @@ struct Cluster {
       const auto [i, j, k] = kThird[m];
       third[m] -= (i == j ? along[k] : 0) + (i == k ? along[j] : 0) + (j == k ? along[i] : 0);
     }
+    remove_traces();
   }
 
   void store(WindingRow& row, std::size_t at) const {
     row.radius[at] = radius;
     row.area[at] = area * kRoundedUp;
     row.spread[at] = (spread + radius * radius * area * kLost) * kRoundedUp;
+    double squares = 0;
+    for (int m = 0; m < 15; ++m)
+      squares += kFourthTimes[m] * fourth[m] * fourth[m];
+    row.fourth[at] =
+        (kOfFourth * std::sqrt(squares) + radius * row.spread[at] * kLost) * kRoundedUp;
     for (int a = 0; a < 3; ++a) {
       row.center[a][at] = center[a];
       row.normal[a][at] = normal[a];
@@ -164,6 +228,33 @@ struct Cluster {
   }
 
  private:
+  /// Adds the symmetric part of a vector times a symmetric tensor.
+  void add_fourth(const double (&n)[3], const double (&three)[10]) {
+    for (int m = 0; m < 15; ++m) {
+      const auto [i, j, k, l] = kFourth[m];
+      fourth[m] += .25 * (n[i] * three[third_at(j, k, l)] + n[j] * three[third_at(i, k, l)] +
+                          n[k] * three[third_at(i, j, l)] + n[l] * three[third_at(i, j, k)]);
+    }
+  }
+  /// Takes out of fourth what is the same in all directions.
+  void remove_traces() {
+    double trace[3][3], sum = 0;
+    for (int k = 0; k < 3; ++k)
+      for (int l = 0; l < 3; ++l)
+        trace[k][l] = fourth[fourth_at(0, 0, k, l)] + fourth[fourth_at(1, 1, k, l)] +
+                      fourth[fourth_at(2, 2, k, l)];
+    for (int k = 0; k < 3; ++k)
+      sum += trace[k][k];
+    const auto same = [](int i, int j) { return i == j ? 1. : 0.; };
+    for (int m = 0; m < 15; ++m) {
+      const auto [i, j, k, l] = kFourth[m];
+      fourth[m] -=
+          (same(i, j) * trace[k][l] + same(i, k) * trace[j][l] + same(i, l) * trace[j][k] +
+           same(j, k) * trace[i][l] + same(j, l) * trace[i][k] + same(k, l) * trace[i][j]) /
+              7 -
+          sum * (same(i, j) * same(k, l) + same(i, k) * same(j, l) + same(i, l) * same(j, k)) / 35;
+    }
+  }
   void reach(double distance) { radius = std::max(radius, distance * kRoundedUp); }
 };
 

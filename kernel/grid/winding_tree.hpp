@@ -26,6 +26,7 @@ struct alignas(64) WindingRow {
   double radius[kBlock];     ///< no place is further from the center
   double area[kBlock];       ///< rounded up
   double spread[kBlock];     ///< the sum of the squared distances from the center, rounded up
+  double fourth[kBlock];     ///< over |r|^5: no less than what the term of n y y y adds
   double normal[3][kBlock];  ///< the sum
   double second[6][kBlock];  ///< xx yy zz xy xz yz
   double third[10][kBlock];  ///< xxx yyy zzz xxy xxz xyy yyz xzz yzz xyz

@@ -1,7 +1,6 @@
 #include "grelha/inside.hpp"
 
 #include <algorithm>
-#include <iterator>
 #include <stdexcept>
 #include <string>
 
@@ -22,6 +21,11 @@ std::int64_t winding(const World& world, Float3 point, const CrossingSum& sum) {
   for (const Crossing& at : crossings(world, {point, scalar::kInsideDirection}))
     outwards += at.enters ? -1 : 1;
   return outwards;
+}
+
+bool is_in_box(const SceneView& scene, const Float3& p) {
+  return p.x >= scene.box_lo[0] && p.x <= scene.box_hi[0] && p.y >= scene.box_lo[1] &&
+         p.y <= scene.box_hi[1] && p.z >= scene.box_lo[2] && p.z <= scene.box_hi[2];
 }
 
 /// Throws NotClosed if there are edges of a kind.
@@ -53,6 +57,43 @@ void prepare_insides(const World& world, InsideRule rule) {
     winding_tree(world);
 }
 
+namespace {
+
+/// Points that are asked by crossings, so many at a time.
+struct AskedPoints {
+  static constexpr std::size_t kMost = 64;
+  Float3 point[kMost];
+  std::size_t place[kMost];  ///< in the caller's array
+  std::size_t count = 0;
+  bool is_full() const { return count == kMost; }
+  void add(const Float3& p, std::size_t at) {
+    place[count] = at;
+    point[count++] = p;
+  }
+};
+
+/// Answers and forgets the points that are asked. By winding, inside has the triangles' answers.
+void answer(const Variant& variant,
+            const World& world,
+            AskedPoints& asked,
+            InsideRule rule,
+            std::uint8_t* inside) {
+  CrossingSum sums[AskedPoints::kMost];
+  variant.loops.sum_crossings(world.impl().view, asked.point, asked.count, sums);
+  for (std::size_t k = 0; k < asked.count; ++k) {
+    std::uint8_t& one = inside[asked.place[k]];
+    bool is_inside = rule == InsideRule::kWinding && one != 0;
+    if (rule != InsideRule::kWinding) {
+      const std::int64_t around = winding(world, asked.point[k], sums[k]);
+      is_inside = rule == InsideRule::kNonzero ? around != 0 : around % 2 != 0;
+    }
+    one = is_inside || sums[k].in_sphere;
+  }
+  asked.count = 0;
+}
+
+}  // namespace
+
 void find_insides(const Variant& variant,
                   const World& world,
                   std::span<const Float3> points,
@@ -64,19 +105,20 @@ void find_insides(const Variant& variant,
   const World::Impl& w = world.impl();
   if (!by_crossings && w.primitives.of<Sphere>().size() == 0)
     return;
-  CrossingSum sums[64];
-  for (std::size_t i = 0; i < points.size(); i += std::size(sums)) {
-    const std::size_t count = std::min(std::size(sums), points.size() - i);
-    variant.loops.sum_crossings(w.view, &points[i], count, sums);
-    for (std::size_t k = 0; k < count; ++k) {
-      bool is_inside = !by_crossings && inside[i + k] != 0;
-      if (by_crossings) {
-        const std::int64_t around = winding(world, points[i + k], sums[k]);
-        is_inside = rule == InsideRule::kNonzero ? around != 0 : around % 2 != 0;
-      }
-      inside[i + k] = is_inside || sums[k].in_sphere;
-    }
+  // a point beside the box of closed meshes is in none; a sphere's box is rounded
+  const bool by_box = (rule == InsideRule::kClosed || rule == InsideRule::kNonzero) &&
+                      w.primitives.of<Sphere>().size() == 0;
+  AskedPoints asked;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (by_box && !is_in_box(w.view, points[i]))
+      inside[i] = 0;
+    else
+      asked.add(points[i], i);
+    if (asked.is_full())
+      answer(variant, world, asked, rule, inside);
   }
+  if (asked.count > 0)
+    answer(variant, world, asked, rule, inside);
 }
 
 bool contains(const World& world, Float3 point, InsideRule rule) {

@@ -64,8 +64,8 @@ class WindingSum {
   /// Bits of the clusters of which the terms left out are small enough; the solid angle of each,
   /// and how far it may be off.
   ///
-  /// With q the radius over the distance R, and S the spread, these terms are at most
-  /// q (4 + 5 q + 6 q^2 ...) = q (4 - 3 q) / (1 - q)^2 times S / R^4.
+  /// With q the radius over the distance R, and S the spread, these terms are at most fourth / R^5
+  /// and q^2 (5 + 6 q + 7 q^2 ...) = q^2 (5 - 4 q) / (1 - q)^2 times S / R^4.
   unsigned take_clusters(const WindingRow& row,
                          double (&angle)[kBlock],
                          double (&error)[kBlock]) const {
@@ -80,9 +80,10 @@ class WindingSum {
       const VDouble q = at(row.radius) * inverse;
       const VDouble rest = VDouble(1) - q;
       const VDouble area = at(row.area);
-      const VDouble terms = q * (VDouble(4) - VDouble(3) * q) / (rest * rest);
-      const VDouble off =
-          (at(row.spread) * terms * inverse_square + VDouble(kRounding) * area) * inverse_square;
+      const VDouble terms = q * q * (VDouble(5) - VDouble(4) * q) / (rest * rest);
+      const VDouble off = ((at(row.spread) * terms + at(row.fourth) * inverse) * inverse_square +
+                           VDouble(kRounding) * area) *
+                          inverse_square;
       taken |= bits(mask_and(q < VDouble(.75), off <= VDouble(allowed_) * area)) << i;
       store(error + i, off);
       const Vec3<VDouble> s = r * r;

@@ -17,8 +17,19 @@ constexpr double kDiffer = 1e-3;  ///< share of points that others may sort else
 
 struct Column {
   std::function<void()> ask;
+  int rounds;  ///< at most
   double us = 1e300;
 };
+
+void measure(std::vector<Column>& columns, int rounds, std::size_t count) {
+  for (int round = 0; round < rounds; ++round)
+    for (Column& column : columns)
+      if (column.ask && round < column.rounds) {
+        const double from = cpu_ns();
+        column.ask();
+        column.us = std::min(column.us, (cpu_ns() - from) / 1e3 / static_cast<double>(count));
+      }
+}
 
 std::size_t differing(std::span<const std::uint8_t> a, std::span<const std::uint8_t> b) {
   std::size_t count = 0;
@@ -43,7 +54,8 @@ bool print_insides(const std::string& name,
   const auto cgal = closed ? make_cgal_inside(scene.geometry.triangles) : nullptr;
   const auto vtk = make_vtk_inside(scene.geometry.triangles);
   const InsideRule rule = closed ? InsideRule::kClosed : InsideRule::kWinding;
-  Column columns[8];
+  constexpr int kMany = 1000, kFew = 2;  // VTK takes long
+  std::vector<Column> columns(8, Column{{}, kMany});
   if (closed)
     columns[0].ask = [&] { contains(world, asked, inside, {.threads = 1}); };
   columns[1].ask = [&] {
@@ -57,31 +69,21 @@ bool print_insides(const std::string& name,
   if (cgal)
     columns[5].ask = [&] { cgal->contains(asked, of_cgal); };
   if (vtk) {
-    columns[6].ask = [&] { vtk->contains(asked, of_vtk); };
-    columns[7].ask = [&] { vtk->distances(asked, vtk_distance); };
+    columns[6] = {[&] { vtk->contains(asked, of_vtk); }, kFew};
+    columns[7] = {[&] { vtk->distances(asked, vtk_distance); }, kFew};
   }
-  for (int round = 0; round < rounds; ++round)
-    for (std::size_t k = 0; k < std::size(columns); ++k)
-      if (columns[k].ask && (k < 6 || round < 2)) {  // VTK takes long
-        const double from = cpu_ns();
-        columns[k].ask();
-        columns[k].us =
-            std::min(columns[k].us, (cpu_ns() - from) / 1e3 / static_cast<double>(count));
-      }
+  measure(columns, rounds, count);
   std::printf("| %s | %s |", name.c_str(), points.c_str());
   for (const Column& column : columns)
     column.ask ? std::printf(" %.2f |", column.us) : std::printf(" - |");
   const std::size_t from_vtk = vtk ? differing(closed ? inside : wound, of_vtk) : 0;
   vtk ? std::printf(" %zu |\n", from_vtk) : std::printf(" - |\n");
   std::fflush(stdout);
-  bool right = true;
-  if (closed)
-    right = differing(inside, wound) <= kDiffer * static_cast<double>(count);
   if (cgal && differing(inside, of_cgal) > 0) {
     std::printf("%s: CGAL: %zu others\n", points.c_str(), differing(inside, of_cgal));
-    right = false;
+    return false;
   }
-  return right;
+  return !closed || differing(inside, wound) <= kDiffer * static_cast<double>(count);
 }
 
 }  // namespace grelha::perf

@@ -149,7 +149,8 @@ def csv_bench(doc, name, command, draw, told):
 
 
 def table_bench(doc, name):
-    """Runs a benchmark that prints a table, and prints it; --keep: into docs/performance.md."""
+    """Runs a benchmark that prints a table, prints and returns it; --keep: into
+    docs/performance.md."""
     parser = argparse.ArgumentParser(description=doc.partition("\n")[0])
     parser.add_argument("--program", default=ROOT / "build/release/grelha",
                         help="the benchmark stands beside it [build/release/grelha]")
@@ -165,6 +166,7 @@ def table_bench(doc, name):
     if asked.keep:
         put_section(DOCS / "performance.md", f"perf/{name}.py", section)
     print(section)
+    return section
 
 
 def commit():

@@ -35,6 +35,33 @@ TEST(AngleOf, IsThatOfLongDouble) {
   EXPECT_EQ(scalar::angle_of<double>(0, -1), -scalar::angle_of<double>(0, 1));
 }
 
+/// A small triangle at the end of a stick that turns its face along it: what is left out is as
+/// large there as the bound says.
+TEST(WindingNumber, HasABoundThatIsReached) {
+  Random random(5);
+  double nearest = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Float3 way = random.direction();
+    const Float3 across = normalized(cross(way, random.direction())), up = cross(way, across);
+    const Float3 normal = i % 2 == 0 ? way : random.direction();
+    const Float3 e = normalized(cross(normal, across)), f = cross(normal, e);
+    Scene s = empty_scene();
+    const float size = .01f;
+    add_triangle(s, way, way + size * e, way + size * f);
+    const Float3 other = -1.f * way;
+    add_triangle(s, other, other + 1e-5f * across, other + 1e-5f * up);
+    const World world(s, {});
+    const Float3 point = static_cast<float>(random.log_in(2, 50)) * way;
+    const auto expected = static_cast<double>(winding_number(s.geometry.triangles, point));
+    for (double error = 1e-12; error < 1e-3; error *= 1.05) {
+      const double off = std::abs(grelha::winding_number(world, point, error) - expected);
+      ASSERT_LE(off, error + 1e-15) << i;
+      nearest = std::max(nearest, off > 1e-14 ? off / error : 0);
+    }
+  }
+  EXPECT_GT(nearest, .5);
+}
+
 /// However little error is allowed, and from however far away.
 TEST(WindingNumber, IsWithinTheErrorAllowed) {
   std::uint64_t seed = 0;
