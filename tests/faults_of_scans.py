@@ -16,6 +16,8 @@ FAULTS = [
     Fault("bytes of colours that are light", "frontend/ply/ply_reader.cpp",
           "float(light_of_srgb(double(i) / 255))", "float(i) / 255", "ply_reader",
           "*PlyColors.AreLight*"),
+    Fault("a glow without its colour", "kernel/shade/shade.hpp",
+          "emission = emission * load3(h.color, i);", "", "shade", "Shade.ColorsAreMixed*"),
     Fault("corners that stay apart", STL, "k > 0 && place(order[k])", "false && place(order[k])",
           "ply_reader", "Stl.IsThePly*"),
     Fault("text that ends anywhere", STL, "if (mesh.x.size() != mesh.indices.size())", "if (false)",

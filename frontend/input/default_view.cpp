@@ -129,6 +129,7 @@ Material default_mesh_material(bool has_colors) {
   if (has_colors) {
     m.diffuse = {0.9f, 0.9f, 0.9f};
     m.specular = {0.04f, 0.04f, 0.04f};
+    m.emission = {0.0063f, 0.0063f, 0.0075f};  // the same glow through the sRGB curve
     return m;
   }
   m.diffuse = {0.80f, 0.78f, 0.75f};

@@ -108,7 +108,8 @@ void SceneBuilder::add_intersections() {
                                         at_crossing(colors, crossing)));
 }
 
-/// Gives each colour of faces, or of points, a material: `of` with its diffuse times the colour.
+/// Gives each colour of faces, or of points, a material: `of` with diffuse and emission times the
+/// colour.
 /// Returns those of all; empty if they have none. `of` follows again, for it may be the one in use.
 std::vector<std::uint32_t> SceneBuilder::materials_of(const Mesh& mesh,
                                                       std::size_t count,
@@ -125,9 +126,9 @@ std::vector<std::uint32_t> SceneBuilder::materials_of(const Mesh& mesh,
     materials[f] = at->second;
     if (!is_new)
       continue;
-    const Float3& d = plain.diffuse;
     all.push_back(plain);
-    all.back().diffuse = {d.x * color[0], d.y * color[1], d.z * color[2]};
+    for (Float3* const c : {&all.back().diffuse, &all.back().emission})
+      *c = {c->x * color[0], c->y * color[1], c->z * color[2]};
   }
   all.push_back(plain);
   return materials;

@@ -93,8 +93,8 @@ struct Triangles {
   std::vector<float> x, y, z;  ///< [vertices]
   /// [vertices] normals of any length, or empty if no vertex has one; (0,0,0): this vertex has none
   std::vector<float> nx, ny, nz;
-  /// [vertices] linear light from 0 to 1 that multiplies Material::diffuse, mixed by u and v
-  /// between the vertices; or empty: 1 everywhere
+  /// [vertices] linear light from 0 to 1 that multiplies diffuse and emission of the material,
+  /// mixed by u and v between the vertices; or empty: 1 everywhere
   std::vector<float> red, green, blue;
   /// [count] vertices of each triangle, counter-clockwise from the front
   std::vector<std::uint32_t> a, b, c;
@@ -143,7 +143,7 @@ struct Material {
   float ior = 1;
   /// split between mirror and refraction by Schlick (1994) where transmission > 0
   bool fresnel = false;
-  Float3 emission{};  ///< light given off
+  Float3 emission{};  ///< light given off, as Triangles::red and its like tint it
   /// spread of the mirror lobe: radius of a disc across the unit mirror direction at its tip
   float roughness = 0;
   bool operator==(const Material&) const = default;  ///< field by field

@@ -58,7 +58,7 @@ struct BatchHits {
   alignas(64) float share[kBatchRow];   ///< see split()
   std::uint32_t pixel[kBatchRow], depth[kBatchRow], material[kBatchRow];
   std::uint32_t sample[kBatchRow], path[kBatchRow];
-  Rows3 color;  ///< of the surface, times its material's diffuse; only with ShadingView::colored
+  Rows3 color;  ///< of vertices, mixed: times diffuse and emission; only with ShadingView::colored
 };
 
 /// Shadow rays and the light each lets through.

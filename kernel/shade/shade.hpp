@@ -28,7 +28,9 @@ namespace grelha::GRELHA_ISA {
 [[gnu::always_inline]] inline void add_emission(const Shader& s, int hits) {
   const BatchHits& h = s.b.hits;
   for (int i = 0; i < hits; i += kSimdWidth) {
-    const VFloat3 emission = gather3(s, kEmissionR, SimdHits<false>{i});
+    VFloat3 emission = gather3(s, kEmissionR, SimdHits<false>{i});
+    if (s.shading.colored)
+      emission = emission * load3(h.color, i);
     add_light(s.work, h.pixel + i, load3(h.weight, i) * emission, first_bits(i, hits));
   }
 }

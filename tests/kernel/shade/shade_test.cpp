@@ -39,6 +39,7 @@ struct Patch {
   explicit Patch(Random& random) {
     Triangles& t = scene.geometry.triangles;
     scene.materials = {plain({.5f, .75f, 1})};
+    scene.materials[0].emission = {.25f, .125f, .5f};
     scene.lights = {{{2, 6, 3}, {.5f, 1, 2}}};
     for (int i = 0; i < 9; ++i) {
       const int x = i % 3 - 1, z = i / 3 - 1;
@@ -69,8 +70,8 @@ struct Patch {
 };
 
 /// At corners, middles of edges, middles of triangles and between: the vertices' colours, mixed by
-/// exact weights, times the diffuse. The spot is off by the direction's 12 eps over a distance of
-/// 6, where a colour changes by up to 1 on a way of 1.
+/// exact weights, times diffuse and emission. The spot is off by the direction's 12 eps over a
+/// distance of 6, where a colour changes by up to 1 on a way of 1.
 TEST(Shade, ColorsAreMixedByWeights) {
   int seen = 0;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
@@ -92,9 +93,12 @@ TEST(Shade, ColorsAreMixedByWeights) {
       const V normal = oracle::unit({-.25L, 1, 0});
       const Real cosine = dot(oracle::unit(V(patch.scene.lights[0].position) - spot), normal);
       const double bound = 2 * 12 * 6 * 6e-8 + kFew;
-      EXPECT_NEAR(p.r, double(.25L * cosine * color.x), bound) << seed << ' ' << double(mix.x);
-      EXPECT_NEAR(p.g, double(.75L * cosine * color.y), bound) << seed << ' ' << double(mix.x);
-      EXPECT_NEAR(p.b, double(2 * cosine * color.z), 2 * bound) << seed << ' ' << double(mix.x);
+      EXPECT_NEAR(p.r, double((.25L * cosine + .25L) * color.x), bound)
+          << seed << ' ' << double(mix.x);
+      EXPECT_NEAR(p.g, double((.75L * cosine + .125L) * color.y), bound)
+          << seed << ' ' << double(mix.x);
+      EXPECT_NEAR(p.b, double((2 * cosine + .5L) * color.z), 3 * bound)
+          << seed << ' ' << double(mix.x);
     }
   }
   EXPECT_GT(seen, 800);
