@@ -3,7 +3,8 @@ find_package(nlohmann_json REQUIRED)
 grelha_test(scenes/scenes unit grelha::scenes)
 grelha_test(frontend/images/image_file unit grelha::frontend)
 target_sources(image_file_test PRIVATE frontend/images/exr_file_test.cpp
-  frontend/images/png_writing_test.cpp frontend/files/atomic_file_test.cpp)
+  frontend/images/png_writing_test.cpp frontend/images/transparent_test.cpp
+  frontend/files/atomic_file_test.cpp)
 find_package(ZLIB REQUIRED)
 target_link_libraries(image_file_test PRIVATE ZLIB::ZLIB OpenMP::OpenMP_CXX)
 grelha_test(frontend/images/compare unit grelha::frontend)

@@ -127,6 +127,17 @@ void check_turntable(const RenderCommand& command) {
         "--turntable: no --layers, --stats, --time SECONDS, --samples-map or --error-map");
 }
 
+void check_transparent(const RenderCommand& command) {
+  if (!command.transparent)
+    return;
+  const auto format = format_of(command.image, command.format);
+  if (format != ImageFormat::png && format != ImageFormat::exr)
+    reject("--transparent and -o", "a .png or .exr, which alone hold alpha", command.image);
+  if (command.render.refine.on() || command.effects.adaptive.on ||
+      !command.work.checkpoint.empty() || command.work.show_interval > 0)
+    throw UsageError("--transparent: no --error, --time, --aa adaptive, --checkpoint or --preview");
+}
+
 /// Endings that promise another format than NFF.
 bool has_other_suffix(std::string_view path) {
   constexpr std::array<std::string_view, 3> kOther{".ply", ".gz", ".grelha"};
@@ -144,6 +155,7 @@ void check_conflicts(const RenderCommand& command) {
   check_grid(command.build);
   check_long_work(command);
   check_turntable(command);
+  check_transparent(command);
   check_tone(command.srgb, command.image, command.format);
   if (command.layers.any() && format_of(command.image, command.format) != ImageFormat::exr)
     reject("--layers and -o", "a .exr, which alone holds layers", command.image);

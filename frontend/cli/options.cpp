@@ -176,6 +176,9 @@ void add_picture_files(CLI::App& sub, RenderCommand& command) {
 }
 
 void add_turntable(CLI::App& sub, RenderCommand& command) {
+  sub.add_flag(
+         "--transparent", command.transparent, "leave out the background: alpha in a .png or .exr")
+      ->group("View");
   value(sub,
         "--turntable",
         "N",

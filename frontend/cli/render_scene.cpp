@@ -19,6 +19,7 @@
 #include "frontend/commands/warning_log.hpp"
 #include "frontend/files/atomic_file.hpp"
 #include "frontend/images/image_file.hpp"
+#include "frontend/images/transparent.hpp"
 #include "frontend/jobs/identity.hpp"
 #include "frontend/jobs/long_render.hpp"
 #include "frontend/jobs/partial.hpp"
@@ -115,7 +116,7 @@ class SceneRender {
     prepare();
     report_.seconds.load = load.seconds();
     const PictureMemory memory = check();
-    if (command_.turntable > 0)
+    if (command_.turntable > 0 || command_.transparent)
       return turn(build(memory));
     LongRender work(resolved_, camera_, scene_, ranks_, log_.reporting());
     const World world = build(memory);
@@ -128,7 +129,11 @@ class SceneRender {
       return kOk;
     write(work, world, maps);
     if (!is_partial_name(command_.image))
-      warn_empty_image(command_.scene, file_.scene, work.image(), log_.reporting());
+      warn_empty_image(command_.scene,
+                       file_.scene.geometry,
+                       file_.scene.background,
+                       work.image(),
+                       log_.reporting());
     report(world);
     log_.check_none(command_.input);  // saves may have failed on the way
     const std::string unmet = unmet_error(command_, report_);
@@ -176,7 +181,10 @@ class SceneRender {
   /// Throws the errors that are known before rendering. Returns the memory for the picture.
   PictureMemory check() {
     camera_ = camera_of(file_, command_);
-    check_image_size(format_of(command_.image, command_.format), camera_.width, camera_.height);
+    check_image_size(format_of(command_.image, command_.format),
+                     camera_.width,
+                     camera_.height,
+                     command_.transparent);
     warn_empty_scene(command_.scene, file_, log_.reporting());
     warn_of_cut_light(command_.scene, file_.scene, resolved_.render, log_.reporting());
     log_.check_none(command_.input);
@@ -206,7 +214,7 @@ class SceneRender {
     return signal;
   }
 
-  /// Renders all views of the World, each as a command of its own would.
+  /// Renders all views of the World, each as a command of its own would, or the only one.
   int turn(const World& world) {
     if (!ranks_.first())
       return kOk;
@@ -214,11 +222,16 @@ class SceneRender {
     ViewFiles files(command_, file_.scene.background);
     bool met = true;
     RayCounts rays;
-    for (int k = 0; k < command_.turntable; ++k) {
-      look(k);
-      prepare();
-      camera_ = camera_of(file_, command_);
-      files.add(k, render_view(world, k), style_of(resolved_, camera_, scene_));
+    for (int k = 0; k < std::max(command_.turntable, 1); ++k) {
+      if (k > 0)
+        take_view(k);
+      ImageStyle style = style_of(resolved_, camera_, scene_);
+      const Image image = render_view(world, k, style.alpha);
+      if (command_.layers.any())
+        style.layers = first_hits(world, camera_, file_.frame, command_.layers);
+      if (command_.turntable == 0)
+        warn_empty_image(command_.scene, file_.scene.geometry, {}, image, log_.reporting());
+      files.add(k, image, style);
       rays += report_.render.rays;
       const std::string unmet = unmet_error(command_, report_);
       if (!unmet.empty())
@@ -229,10 +242,17 @@ class SceneRender {
     report_.render.rays = rays;
     report_.seconds.render = render.seconds();
     report(world);
+    log_.check_none(command_.input);
     return met || !command_.input.strict ? kOk : kNotMet;
   }
 
-  Image render_view(const World& world, int number) {
+  void take_view(int number) {
+    look(number);
+    prepare();
+    camera_ = camera_of(file_, command_);
+  }
+
+  Image render_view(const World& world, int number, Alpha& alpha) {
     ProgressBar bar(bars_);
     RenderOptions options = resolved_.render;
     options.lighting = Lighting{file_.scene.lights, file_.scene.background};
@@ -240,11 +260,13 @@ class SceneRender {
       bar.update(share);
       return StopSignals::seen() == 0;
     };
-    Image image = grelha::render(world, camera_, options, report_.render);
+    Image image = command_.transparent
+                      ? render_transparent(world, camera_, options, report_.render, alpha)
+                      : grelha::render(world, camera_, options, report_.render);
     if (const int signal = StopSignals::seen())
-      throw Interrupted(
-          signal,
-          "rendering view " + std::to_string(number) + " of " + std::to_string(command_.turntable));
+      throw Interrupted(signal,
+                        "rendering view " + std::to_string(number + 1) + " of " +
+                            std::to_string(std::max(command_.turntable, 1)));
     return image;
   }
 

@@ -11,7 +11,8 @@ namespace grelha {
 void check_sheet(const RenderCommand& command, const Camera& camera);
 
 /// The pictures of a turntable: a file each, where {} in the name is their number, from 0 and with
-/// as many digits as the last; or one sheet of all, row by row, nearly square.
+/// as many digits as the last; or one sheet of all, row by row, nearly square. Without a turntable
+/// it is one view.
 class ViewFiles {
  public:
   /// `background`: colour of the rest of the sheet.
@@ -24,7 +25,7 @@ class ViewFiles {
   const RenderCommand& command_;
   Float3 background_;
   Image sheet_;
-  ImageStyle style_;
+  ImageStyle style_;  ///< of the sheet
 };
 
 }  // namespace grelha

@@ -79,8 +79,9 @@ struct RenderCommand {
   std::string stats;                   ///< file for the counts, or empty
   std::string samples_map, error_map;  ///< pictures of sample counts and of errors, or empty
   bool quiet = false, srgb = false;
-  int turntable = 0;     ///< views all around, a picture each or a sheet of all; 0: one view
-  bool colored = false;  ///< the scene has colours that are light: a PNG takes the sRGB curve
+  bool transparent = false;  ///< the background is left out, the picture has alpha
+  int turntable = 0;         ///< views all around, a picture each or a sheet of all; 0: one view
+  bool colored = false;      ///< the scene has colours that are light: a PNG takes the sRGB curve
 };
 
 struct InfoCommand {

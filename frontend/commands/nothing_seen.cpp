@@ -51,10 +51,11 @@ void warn_empty_scene(const std::string& path, const SceneFile& file, const Warn
 }
 
 void warn_empty_image(const std::string& path,
-                      const Scene& scene,
+                      const Geometry& geometry,
+                      const Float3& background,
                       const Image& image,
                       const Warn& warn) {
-  if (!is_empty(scene.geometry) && is_background_only(image, scene.background))
+  if (!is_empty(geometry) && is_background_only(image, background))
     warn(path +
          ": warning: the picture shows the background alone: turn the view, or widen \"angle\"");
 }

@@ -10,7 +10,8 @@ void warn_empty_scene(const std::string& path, const SceneFile& file, const Warn
 
 /// Warns of a picture in which every pixel is background.
 void warn_empty_image(const std::string& path,
-                      const Scene& scene,
+                      const Geometry& geometry,
+                      const Float3& background,
                       const Image& image,
                       const Warn& warn);
 

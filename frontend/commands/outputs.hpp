@@ -39,6 +39,6 @@ void check_not_read(const std::vector<Output>& outputs, const std::vector<std::s
 void check_distinct(const std::vector<RenderCommand>& commands);
 
 /// Throws UsageError when a picture of this size is too large for its format.
-void check_image_size(std::optional<ImageFormat> format, int width, int height);
+void check_image_size(std::optional<ImageFormat> format, int width, int height, bool alpha = false);
 
 }  // namespace grelha

@@ -139,9 +139,19 @@ Image read_part(Imf::MultiPartInputFile& file, int number, std::size_t bytes) {
     const std::string name(1, is_grey ? 'Y' : "RGB"[c]);
     buffer.insert(name, Imf::Slice(Imf::FLOAT, base, kThree, row));
   }
+  const auto pixels = std::size_t(data.width) * std::size_t(data.height);
+  Alpha alpha(has(file.header(number).channels(), "A") ? pixels : 0);
+  if (!alpha.empty())
+    buffer.insert("A",
+                  Imf::Slice(Imf::FLOAT,
+                             reinterpret_cast<char*>(alpha.data()) - first / 3,
+                             kOne,
+                             kOne * std::size_t(data.width)));
   Imf::InputPart part(file, number);
   part.setFrameBuffer(buffer);
   part.readPixels(window.min.y, window.max.y);
+  if (std::ranges::any_of(alpha, [](float a) { return a != 1; }))
+    throw Iex::InputExc(kTransparent);
   for (std::size_t i = 0; is_grey && i < data.rgb.size(); ++i)
     data.rgb[i] = data.rgb[i - i % 3];
   return data;
@@ -166,7 +176,10 @@ int colored_part(const Imf::MultiPartInputFile& file) {
 
 }  // namespace
 
-std::string encode_exr(const Image& image, const Layers& layers, const Notes& notes) {
+std::string encode_exr(const Image& image,
+                       const Layers& layers,
+                       const Notes& notes,
+                       const Alpha& alpha) {
   Imf::Header header(image.width, image.height);
   header.compression() = Imf::ZIP_COMPRESSION;
   header.zipCompressionLevel() = kExrZipLevel;
@@ -176,6 +189,8 @@ std::string encode_exr(const Image& image, const Layers& layers, const Notes& no
   channels.add("R", image.rgb.data(), kThree);
   channels.add("G", image.rgb.data() + 1, kThree);
   channels.add("B", image.rgb.data() + 2, kThree);
+  if (!alpha.empty())
+    channels.add("A", alpha.data(), kOne);
   add_layers(layers, channels);
   MemoryOut out;
   {

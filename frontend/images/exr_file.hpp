@@ -12,11 +12,15 @@
 namespace grelha {
 
 /// Scanlines of floats, packed in blocks without loss. Notes become attributes of type string,
-/// their keys in small letters.
-std::string encode_exr(const Image& image, const Layers& layers = {}, const Notes& notes = {});
+/// their keys in small letters; alpha becomes the channel A.
+std::string encode_exr(const Image& image,
+                       const Layers& layers = {},
+                       const Notes& notes = {},
+                       const Alpha& alpha = {});
 
 /// The channels R, G and B, or Y alone, of the first part that has them, whatever its types, tiles
-/// and compression. Pixels outside the data window are black. Throws FileError.
+/// and compression. Pixels outside the data window are black. Throws FileError, also for a picture
+/// that shines through.
 Image read_exr(const std::string& path, const std::string& bytes);
 
 }  // namespace grelha

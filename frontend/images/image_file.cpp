@@ -123,13 +123,19 @@ Image read_pfm(const std::string& path, const std::string& bytes) {
 template <class T>
 using StbPixels = std::unique_ptr<T, void (*)(void*)>;
 
+/// Of four channels a pixel.
 template <class T>
 Image from_stb(const std::string& path, StbPixels<T> pixels, int width, int height, float white) {
   if (!pixels)
     throw FileError(path, std::string("cannot read the picture: ") + stbi_failure_reason());
   Image image(width, height);
-  for (std::size_t i = 0; i < image.rgb.size(); ++i)
-    image.rgb[i] = float(pixels.get()[i]) / white;
+  const T* from = pixels.get();
+  for (std::size_t i = 0; i < image.rgb.size(); i += 3, from += 4) {
+    if (float(from[3]) != white)
+      throw FileError(path, kTransparent);
+    for (std::size_t c = 0; c < 3; ++c)
+      image.rgb[i + c] = float(from[c]) / white;
+  }
   return image;
 }
 
@@ -143,18 +149,18 @@ Image read_by_stb(const std::string& path, const std::string& bytes, ImageFormat
   if (format == ImageFormat::hdr) {
     if (!stbi_is_hdr_from_memory(data, size))
       throw FileError(path, "not a Radiance picture");
-    StbPixels<float> pixels(stbi_loadf_from_memory(data, size, &w, &h, &channels, 3),
+    StbPixels<float> pixels(stbi_loadf_from_memory(data, size, &w, &h, &channels, 4),
                             stbi_image_free);
     return from_stb(path, std::move(pixels), w, h, 1);
   }
   if (bytes.compare(0, 4, "\x89PNG") != 0)
     throw FileError(path, "not a PNG picture");
   if (stbi_is_16_bit_from_memory(data, size)) {
-    StbPixels<stbi_us> pixels(stbi_load_16_from_memory(data, size, &w, &h, &channels, 3),
+    StbPixels<stbi_us> pixels(stbi_load_16_from_memory(data, size, &w, &h, &channels, 4),
                               stbi_image_free);
     return from_stb(path, std::move(pixels), w, h, 65535);
   }
-  StbPixels<stbi_uc> pixels(stbi_load_from_memory(data, size, &w, &h, &channels, 3),
+  StbPixels<stbi_uc> pixels(stbi_load_from_memory(data, size, &w, &h, &channels, 4),
                             stbi_image_free);
   return from_stb(path, std::move(pixels), w, h, 255);
 }
@@ -178,17 +184,24 @@ std::string_view ending_of(ImageFormat format) {
   return std::ranges::find(kImageFormats, format, &FormatName::second)->first;
 }
 
-bool image_fits(ImageFormat format, int width, int height) {
+bool image_fits(ImageFormat format, int width, int height, int channels) {
   const bool in_range = width >= 1 && height >= 1 && width <= kMaxSide && height <= kMaxSide;
   const bool by_stb = format == ImageFormat::png || format == ImageFormat::hdr;
-  return in_range && (!by_stb || (3 * std::int64_t(width) + 1) * height <= kStbBytes);
+  return in_range && (!by_stb || (channels * std::int64_t(width) + 1) * height <= kStbBytes);
 }
 
-std::string encode_png(const Image& image, Tone tone, const Notes& notes) {
-  const std::vector<std::uint8_t> pixels = to_bytes(image, tone);
+std::string encode_png(const Image& image, Tone tone, const Notes& notes, const Alpha& alpha) {
+  const std::vector<std::uint8_t> pixels =
+      alpha.empty() ? to_bytes(image, tone) : to_bytes(image, tone, alpha);
+  const int channels = alpha.empty() ? 3 : 4;
   std::string bytes;
-  if (!stbi_write_png_to_func(
-          append, &bytes, image.width, image.height, 3, pixels.data(), 3 * image.width))
+  if (!stbi_write_png_to_func(append,
+                              &bytes,
+                              image.width,
+                              image.height,
+                              channels,
+                              pixels.data(),
+                              channels * image.width))
     throw std::bad_alloc();
   return with_chunks(bytes, tone, notes);
 }
@@ -208,17 +221,17 @@ std::string encode_pfm(const Image& image) {
 
 void write_image(const std::string& path, const Image& image, const ImageStyle& style) {
   const auto format = style.format ? style.format : image_format(path);
-  if (!format || !image_fits(*format, image.width, image.height))
+  if (!format || !image_fits(*format, image.width, image.height, style.alpha.empty() ? 3 : 4))
     throw FileError(path, "cannot hold this picture");
   switch (*format) {
     case ImageFormat::png:
-      return write_file(path, encode_png(image, style.tone, style.notes));
+      return write_file(path, encode_png(image, style.tone, style.notes, style.alpha));
     case ImageFormat::hdr:
       return write_file(path, encode_hdr(image, style.notes));
     case ImageFormat::pfm:
       return write_file(path, encode_pfm(image));
     case ImageFormat::exr:
-      return write_file(path, encode_exr(image, style.layers, style.notes));
+      return write_file(path, encode_exr(image, style.layers, style.notes, style.alpha));
   }
 }
 

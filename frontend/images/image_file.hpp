@@ -25,12 +25,15 @@ std::optional<ImageFormat> image_format(std::string_view path);
 /// The ending of such files: "png".
 std::string_view ending_of(ImageFormat format);
 
-/// Returns whether the format's writer can hold a picture of that size.
-bool image_fits(ImageFormat format, int width, int height);
+/// Returns whether the format's writer can hold a picture of that size, with 3 channels or 4.
+bool image_fits(ImageFormat format, int width, int height, int channels = 3);
 
 /// The file's bytes: hdr_file.hpp and exr_file.hpp have the others. .pfm (little endian, bottom row
 /// first) holds linear floats, exactly, and has no place for notes.
-std::string encode_png(const Image& image, Tone tone, const Notes& notes = {});
+std::string encode_png(const Image& image,
+                       Tone tone,
+                       const Notes& notes = {},
+                       const Alpha& alpha = {});
 std::string encode_pfm(const Image& image);
 
 /// Writes the file whole or not at all, or to stdout. Throws FileError.
@@ -39,8 +42,8 @@ void write_image(const std::string& path, const Image& image, const ImageStyle& 
 /// "light", "sRGB values", "values of gamma 0.45455"
 std::string encoding_text(const Encoding& encoding);
 
-/// Reads what write_image writes and other files of these kinds. A PNG's bytes come as byte / 255,
-/// unbent; `encoding`, where given, says how they were bent.
+/// Reads what write_image writes and other files of these kinds, but none that shine through. A
+/// PNG's bytes come as byte / 255, unbent; `encoding`, where given, says how they were bent.
 Image read_image(const std::string& path, Encoding* encoding = nullptr);
 
 }  // namespace grelha

@@ -30,12 +30,20 @@ struct Layers {
   std::vector<std::uint32_t> id{};
 };
 
+/// [pixels] the share of samples that hit something; the picture's colours are times that
+/// (associated). Empty: 1 everywhere.
+using Alpha = std::vector<float>;
+
+/// Why a picture is not read.
+inline constexpr char kTransparent[] = "expected an opaque picture, found alpha below 1";
+
 /// The options for writing a picture.
 struct ImageStyle {
   std::optional<ImageFormat> format{};  ///< absent: by the name's ending
   Tone tone = Tone::authored;
   Notes notes{};
   Layers layers{};
+  Alpha alpha{};  ///< for PNG and OpenEXR
 };
 
 /// The encoding of the numbers in a file.

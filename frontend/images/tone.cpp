@@ -58,6 +58,17 @@ std::vector<std::uint8_t> to_bytes(const Image& image, Tone tone) {
   return bytes;
 }
 
+std::vector<std::uint8_t> to_bytes(const Image& image, Tone tone, const Alpha& alpha) {
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(4 * alpha.size());
+  for (std::size_t i = 0; i < alpha.size(); ++i) {
+    for (std::size_t c = 0; c < 3; ++c)
+      bytes.push_back(alpha[i] > 0 ? to_byte(image.rgb[3 * i + c] / alpha[i], tone) : 0);
+    bytes.push_back(to_byte(alpha[i], Tone::authored));
+  }
+  return bytes;
+}
+
 Image as_light(Image image, const Encoding& encoding) {
   if (encoding.kind == Encoding::Kind::light)
     return image;

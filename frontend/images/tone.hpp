@@ -18,6 +18,9 @@ std::uint8_t to_byte(float value, Tone tone);
 /// The same for a whole picture.
 std::vector<std::uint8_t> to_bytes(const Image& image, Tone tone);
 
+/// Four channels a pixel; the colours are divided by alpha (unassociated).
+std::vector<std::uint8_t> to_bytes(const Image& image, Tone tone, const Alpha& alpha);
+
 /// Decodes an image to light.
 Image as_light(Image image, const Encoding& encoding);
 

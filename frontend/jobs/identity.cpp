@@ -112,6 +112,8 @@ std::string settings_text(const RenderCommand& resolved, const Camera& camera) {
   if (e.glossy)
     words +=
         " roughness=" + text(e.glossy->roughness) + " gloss-rays=" + std::to_string(s.glossy_rays);
+  if (resolved.transparent)
+    words += " transparent";
   return resolved.colored ? words + kColored : words;
 }
 

@@ -19,6 +19,7 @@ namespace {
 constexpr std::uint64_t kPixel = 12;  ///< bytes of a picture's pixel: three floats
 /// and of its file's, before that is written: .pfm and .hdr; a .png takes half of it
 constexpr std::uint64_t kFilePixel = 12;
+constexpr std::uint64_t kAlpha = 8;             ///< in the picture and in its file
 constexpr std::uint64_t kSum = 24;              ///< three sums of light
 constexpr std::uint64_t kBlueIndex = 4;         ///< where its samples begin
 constexpr std::uint64_t kRefined = 80;          ///< docs/architecture.md, and 9 a pixel for blocks
@@ -132,6 +133,8 @@ PictureMemory picture_memory(const RenderCommand& command, const Camera& camera)
                                : 0);
   if (!part)
     memory.other += (kPixel + kFilePixel) * pixels;
+  if (command.transparent)
+    memory.other += (kPixel + kAlpha) * pixels;
   if (command.render.sampling.sampler == Sampler::kBlue)
     memory.other += kBlueIndex * pixels;
   return memory;

@@ -38,6 +38,12 @@ struct CrossedFaces {
   std::string text() const;
 };
 
+/// Gives each colour of faces, or of points, a material: `of` with diffuse and emission times the
+/// colour. Returns those of all. `of` follows again, for it may be the one in use.
+std::vector<std::uint32_t> materials_of_colors(const Mesh& mesh,
+                                               std::vector<Material>& all,
+                                               std::uint32_t of);
+
 /// Adds the primitives of the readers to the kernel's arrays. Primitives that cannot be drawn are
 /// counted in SceneFile::dropped instead.
 class SceneBuilder {

@@ -108,18 +108,12 @@ void SceneBuilder::add_intersections() {
                                         at_crossing(colors, crossing)));
 }
 
-/// Gives each colour of faces, or of points, a material: `of` with diffuse and emission times the
-/// colour.
-/// Returns those of all; empty if they have none. `of` follows again, for it may be the one in use.
-std::vector<std::uint32_t> SceneBuilder::materials_of(const Mesh& mesh,
-                                                      std::size_t count,
-                                                      std::uint32_t of) {
-  if (mesh.red.empty() || mesh.red.size() != count)
-    return {};
-  std::vector<Material>& all = file_.scene.materials;
+std::vector<std::uint32_t> materials_of_colors(const Mesh& mesh,
+                                               std::vector<Material>& all,
+                                               std::uint32_t of) {
   const Material plain = all[of];
   std::map<std::array<float, 3>, std::uint32_t> found;
-  std::vector<std::uint32_t> materials(count);
+  std::vector<std::uint32_t> materials(mesh.red.size());
   for (std::size_t f = 0; f < materials.size(); ++f) {
     const std::array color{mesh.red[f], mesh.green[f], mesh.blue[f]};
     const auto [at, is_new] = found.try_emplace(color, std::uint32_t(all.size()));
@@ -132,6 +126,15 @@ std::vector<std::uint32_t> SceneBuilder::materials_of(const Mesh& mesh,
   }
   all.push_back(plain);
   return materials;
+}
+
+/// Those of a mesh that has a colour for each of `count` faces or points; else none.
+std::vector<std::uint32_t> SceneBuilder::materials_of(const Mesh& mesh,
+                                                      std::size_t count,
+                                                      std::uint32_t of) {
+  if (mesh.red.empty() || mesh.red.size() != count)
+    return {};
+  return materials_of_colors(mesh, file_.scene.materials, of);
 }
 
 /// Half of the distance between points that lie evenly on half of their box's sides, and some more:

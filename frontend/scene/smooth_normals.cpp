@@ -25,6 +25,8 @@ Corner corner_of(const Triangles& t, std::uint32_t a, std::uint32_t b, std::uint
   const Double3 ab = sum(1, point(t, b), -1, point(t, a)),
                 ac = sum(1, point(t, c), -1, point(t, a));
   const Double3 normal = cross(ab, ac);
+  if (normal == Double3{})
+    return {};  // no area: it says nothing, and is not seen
   return {sum(1 / length(normal), normal, 0, normal),
           sum(1 / (dot(ab, ab) * dot(ac, ac)), normal, 0, normal)};
 }

@@ -86,6 +86,9 @@ struct RenderOptions {
   RefineOptions refine;
   /// in place of the scene's, for pictures of one World in several lights; absent: the scene's
   std::optional<Lighting> lighting;
+  /// the picture is 1 where the camera's rays hit nothing and 0 where they hit, by the same samples
+  /// as its light; of a subdivided picture or one by error, by samples of its own
+  bool misses = false;
   bool phases = false;           ///< measure the time spent in each phase
   Observer* observer = nullptr;  ///< called at each change of phase, instead of measuring.
   /// on: pixels are averages of lattice points, with `samples` rays through each point; one ray

@@ -139,10 +139,14 @@ Setup set_up(const World& world, const Camera& camera, const RenderOptions& opti
               .shading = w.shading,
               .places = {},
               .lights = {}};
-  if (options.lighting) {
+  if (options.misses)
+    setup.lights.emplace(std::vector<Light>{}, Float3{1, 1, 1});
+  else if (options.lighting)
     setup.lights.emplace(options.lighting->lights, options.lighting->background);
+  if (setup.lights)
     setup.lights->show(w.materials, setup.shading);
-  }
+  if (options.misses)
+    setup.shading.emits = setup.shading.reflects = false;
   const SampleOptions sampling = needed_samples(setup.shading, camera, options);
   setup.plan = plan_samples(sampling, camera, setup.shading);
   if (setup.plan.on && setup.plan.kind == SamplePlan::kBlue) {

@@ -174,7 +174,8 @@ class _Camera(TypedDict):
 
 class Scene:
     def __init__(self, vertices: ArrayLike, faces: ArrayLike, *, colors: ArrayLike | None = ...,
-                 material: dict[str, Any] | None = ..., threads: int = ...) -> None: ...
+                 smooth: float | None = ..., material: dict[str, Any] | None = ...,
+                 threads: int = ...) -> None: ...
     @property
     def world(self) -> World: ...
     @property
@@ -193,7 +194,7 @@ class Scene:
                up: _Point | None = ..., angle: float | None = ...,
                orbit: tuple[float, float] | tuple[float, float, float] | None = ...,
                orthographic: float | None = ..., lights: ArrayLike | None = ...,
-               background: _Point | None = ...,
+               background: _Point | None = ..., transparent: bool = ...,
                threads: int = ...) -> NDArray[np.float32]: ...
     def camera_rays(self, width: int | None = ..., height: int | None = ..., *,
                     eye: _Point | None = ..., at: _Point | None = ..., up: _Point | None = ...,

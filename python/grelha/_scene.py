@@ -15,17 +15,20 @@ class Scene:
     Scene(vertices, faces) shows a mesh in light grey with three lights, as the program shows a bare
     PLY file. The arguments are those of World.
 
-    colors   (vertices, 3): uint8 is sRGB, other numbers are light from 0 to 1. A picture of them is
-             light as well: write_image(path, image, srgb=True).
+    colors   (vertices, 3), or (faces, 3) where that is another shape: uint8 is sRGB, other numbers
+             are light from 0 to 1. A picture of them is light as well:
+             write_image(path, image, srgb=True).
+    smooth   degrees, up to 180: vertices get normals, but for edges that turn by more, where
+             `vertices` has them twice
     material a dict of what differs from light grey: diffuse, specular, mirror and emission (a number
              or (3,)), shine, transmission, ior, roughness
     """
 
     __slots__ = ("_core", "__weakref__")
 
-    def __init__(self, vertices, faces, *, colors=None, material=None, threads=0):
+    def __init__(self, vertices, faces, *, colors=None, smooth=None, material=None, threads=0):
         _expect_unmade(self)
-        self._core = _grelha.scene_of_mesh(vertices, faces, colors, material, threads)
+        self._core = _grelha.scene_of_mesh(vertices, faces, colors, smooth, material, threads)
 
     @classmethod
     def _of(cls, core):
@@ -78,7 +81,7 @@ class Scene:
 
     def render(self, width=None, height=None, *, samples=None, error=None, seed=0, depth=5,
                eye=None, at=None, up=None, angle=None, orbit=None, orthographic=None, lights=None,
-               background=None, threads=0):
+               background=None, transparent=False, threads=0):
         """A picture, linear RGB, row 0 on top: float32 (height, width, 3).
 
         width, height   pixels; None: as the scene says
@@ -97,12 +100,14 @@ class Scene:
         lights          (n, 2, 3), a position and a colour each; None: the scene's. Those of a bare
                         mesh move with the camera, unless lights=scene.lights holds them.
         background      (3,) light of rays that hit nothing
+        transparent     True leaves the background out: (height, width, 4), the colours times alpha,
+                        the share of samples that hit something. Not with error=.
         threads         0: one for each processor. The number changes no bit of the picture.
 
         Raises TypeError or ValueError that names the argument, and KeyboardInterrupt.
         """
         view = (width, height, eye, at, up, angle, orbit, orthographic, lights, background)
-        return self._core.render(view, samples, error, seed, depth, threads)
+        return self._core.render(view, samples, error, seed, depth, bool(transparent), threads)
 
     def camera_rays(self, width=None, height=None, *, eye=None, at=None, up=None, angle=None,
                     orbit=None, orthographic=None):
@@ -145,7 +150,9 @@ def read(path, *, colors=True, points=None, smooth=None, material=None, threads=
 
 
 def write_image(path, image, *, srgb=False):
-    """Writes an array of shape (h, w) or (h, w, 3), 0 black and 1 white.
+    """Writes an array of shape (h, w), (h, w, 3) or (h, w, 4), 0 black and 1 white.
+
+    The fourth is alpha, which the colours are multiplied by, for .png and .exr.
 
     path   ends with .png, .hdr, .pfm or .exr
     srgb   a .png shows the numbers as light, through the sRGB curve; False: as bytes from 0 to 255

@@ -9,10 +9,12 @@
 #include "frontend/images/exr_file.hpp"
 #include "frontend/images/hdr_file.hpp"
 #include "frontend/images/image_file.hpp"
+#include "frontend/images/transparent.hpp"
 #include "frontend/input/default_view.hpp"
 #include "frontend/input/effects.hpp"
 #include "frontend/input/read_scene.hpp"
 #include "frontend/scene/scene_builder.hpp"
+#include "frontend/scene/smooth_normals.hpp"
 #include "grelha/render.hpp"
 #include "src/hear.hpp"
 #include "src/materials.hpp"
@@ -120,18 +122,20 @@ FileScene FileScene::read(py::handle path,
   return of(std::move(file), framed, threads);
 }
 
-FileScene FileScene::of_mesh(
-    py::handle vertices, py::handle faces, py::handle colors, py::handle material, int threads) {
-  ModelParts mesh = mesh_parts(vertices, faces);
+FileScene FileScene::of_mesh(const MeshArguments& given, int threads) {
+  ModelParts mesh = mesh_parts(given.vertices, given.faces);
   SceneFile file;
   file.frame.offset = mesh.scene.offset;
   file.scene = std::move(mesh.scene);
-  file.colors.of_vertices = !colors.is_none();
-  if (file.colors.of_vertices)
-    put_colors(colors, file.scene.geometry.triangles);
-  file.scene.materials = {default_mesh_material(file.colors.of_vertices)};
-  if (!material.is_none())
-    put_material(material, file.scene.materials);
+  const bool colored = !given.colors.is_none();
+  file.scene.materials = {default_mesh_material(colored)};
+  if (!given.material.is_none())
+    put_material(given.material, file.scene.materials);
+  if (colored)
+    file.colors.of_vertices = put_colors(given.colors, file.scene);
+  file.colors.of_faces = colored && !file.colors.of_vertices;
+  if (const double degrees = smoothness_in(given.smooth); degrees > 0)
+    smooth_normals(file.scene.geometry.triangles, 0, degrees);
   add_default_view(file);
   return of(std::move(file), mesh.in_double, threads);
 }
@@ -218,47 +222,58 @@ py::array_t<float> FileScene::render(const RenderArguments& given) const {
   View view = view_for(given.view);
   const Camera& camera = view.camera;
   RenderOptions options = options_for(given);
+  if (given.transparent && options.refine.on())
+    throw py::value_error("error, transparent: expected one of them, found both");
   options.lighting = std::move(view.lighting);
-  py::array_t<float> pixels(Shape{camera.height, camera.width, 3});
-  float* const to = pixels.mutable_data();
+  py::array_t<float> pixels(Shape{camera.height, camera.width, given.transparent ? 4 : 3});
+  float* to = pixels.mutable_data();
   const SharedModel model = model_;
   hear_signals([&](const Progress& progress) {
     options.progress = progress;
     RenderStats stats;
-    const Image image = grelha::render(model->world(), camera, options, stats);
-    std::copy(image.rgb.begin(), image.rgb.end(), to);
+    Alpha alpha;
+    const Image image = given.transparent
+                            ? render_transparent(model->world(), camera, options, stats, alpha)
+                            : grelha::render(model->world(), camera, options, stats);
+    for (std::size_t i = 0; i < image.rgb.size(); ++i) {
+      *to++ = image.rgb[i];
+      if (given.transparent && i % 3 == 2)
+        *to++ = alpha[i / 3];
+    }
   });
   return pixels;
 }
 
 namespace {
 
-std::string encoded(ImageFormat format, const Image& image, Tone tone) {
-  switch (format) {
+struct Picture {
+  Image image;
+  ImageFormat format;
+  Tone tone;
+  Alpha alpha;
+};
+
+std::string encoded(const Picture& p) {
+  switch (p.format) {
     case ImageFormat::png:
-      return encode_png(image, tone);
+      return encode_png(p.image, p.tone, {}, p.alpha);
     case ImageFormat::hdr:
-      return encode_hdr(image);
+      return encode_hdr(p.image);
     case ImageFormat::pfm:
-      return encode_pfm(image);
+      return encode_pfm(p.image);
     case ImageFormat::exr:
-      return encode_exr(image);
+      return encode_exr(p.image, {}, {}, p.alpha);
   }
   return {};
 }
 
 /// Encodes a picture, which may take seconds, beside a thread that hears signals; then writes it.
-void write_encoded(const std::string& name, ImageFormat format, Image image, Tone tone) {
+void write_encoded(const std::string& name, Picture picture) {
   check_writable(name);
-  struct Picture {
-    Image image;
-    std::string bytes;
-  };
-  const auto picture = std::make_shared<Picture>(Picture{std::move(image), {}});
-  hear_signals_beside(
-      [picture, format, tone] { picture->bytes = encoded(format, picture->image, tone); });
+  const auto work = std::make_shared<std::pair<Picture, std::string>>(std::move(picture), "");
+  hear_signals_beside([work] { work->second = encoded(work->first); });
   const py::gil_scoped_release unlocked;
-  write_file(name, picture->bytes);
+  write_file(name, work->second);
 }
 
 }  // namespace
@@ -267,26 +282,29 @@ void write_picture(py::handle path, py::handle given, bool srgb) {
   const std::string name = path_in(path);
   if (!image_format(name))
     wrong_value("path", "a name that ends with .png, .hdr, .pfm or .exr", '"' + name + '"');
-  const py::array array = numbers_in(given, "image", "(h, w) or (h, w, 3)");
+  const py::array array = numbers_in(given, "image", "(h, w), (h, w, 3) or (h, w, 4)");
   const Shape shape = shape_of(array);
-  const bool grey = shape.size() == 2;
-  if (!grey && !(shape.size() == 3 && shape[2] == 3))
-    wrong_value("image", "shape (h, w) or (h, w, 3)", text_of(shape));
+  const auto channels = std::size_t(shape.size() == 3 ? shape[2] : shape.size() == 2 ? 1 : 0);
+  if (channels != 3 && channels != 4 && shape.size() != 2)
+    wrong_value("image", "shape (h, w), (h, w, 3) or (h, w, 4)", text_of(shape));
   for (const std::size_t side : {0, 1})
     if (shape[side] < 1 || shape[side] > kMostSide)
       wrong_value("image", "sides of 1 to " + std::to_string(kMostSide), text_of(shape));
-  const ImageFormat format = *image_format(name);
-  if (srgb && format != ImageFormat::png)
+  Picture p{Image(int(shape[1]), int(shape[0])), *image_format(name), {}, {}};
+  if (srgb && p.format != ImageFormat::png)
     wrong_value("srgb", "a .png, other pictures hold light as it is", '"' + name + '"');
-  const int width = int(shape[1]);
-  const int height = int(shape[0]);
-  if (!image_fits(format, width, height))
+  if (channels == 4 && p.format != ImageFormat::png && p.format != ImageFormat::exr)
+    wrong_value("image", "three channels for .hdr and .pfm, which hold no alpha", text_of(shape));
+  if (!image_fits(p.format, p.image.width, p.image.height, channels == 4 ? 4 : 3))
     wrong_value("image", "a picture that this format holds", text_of(shape));
+  p.tone = srgb ? Tone::srgb : Tone::authored;
   const auto floats = py::array_t<float, py::array::c_style | py::array::forcecast>(array);
-  Image image(width, height);
-  for (std::size_t i = 0; i < image.rgb.size(); ++i)
-    image.rgb[i] = floats.data()[grey ? i / 3 : i];
-  write_encoded(name, format, std::move(image), srgb ? Tone::srgb : Tone::authored);
+  const float* const from = floats.data();
+  for (std::size_t i = 0; i < p.image.rgb.size(); ++i)
+    p.image.rgb[i] = from[channels == 1 ? i / 3 : i / 3 * channels + i % 3];
+  for (std::size_t i = 0; channels == 4 && i < p.image.rgb.size() / 3; ++i)
+    p.alpha.push_back(from[4 * i + 3]);
+  write_encoded(name, std::move(p));
 }
 
 }  // namespace grelha::python

@@ -17,7 +17,14 @@ struct ViewArguments {
 /// And of a picture.
 struct RenderArguments {
   ViewArguments view;
-  py::handle samples, error, seed, depth, threads;
+  py::handle samples, error, seed, depth;
+  bool transparent;
+  py::handle threads;
+};
+
+/// What a caller says of a mesh, see Scene.
+struct MeshArguments {
+  py::handle vertices, faces, colors, smooth, material;
 };
 
 class FileScene {
@@ -28,8 +35,7 @@ class FileScene {
                         py::handle material,
                         int threads);
   /// A mesh as the program shows a bare PLY: its own view, three lights, light grey.
-  static FileScene of_mesh(
-      py::handle vertices, py::handle faces, py::handle colors, py::handle material, int threads);
+  static FileScene of_mesh(const MeshArguments& given, int threads);
 
   py::tuple state() const;
   /// Throws ValueError for what state() did not make.
@@ -39,6 +45,7 @@ class FileScene {
   py::dict camera() const;
   py::array_t<double> lights() const;
   py::object colors() const;  ///< of the vertices (vertices, 3), or None
+  /// (h, w, 3), or 4 with alpha.
   py::array_t<float> render(const RenderArguments& given) const;
   /// Origins and directions of the rays through the centres of pixels (h, w, 3).
   py::tuple camera_rays(const ViewArguments& given) const;
@@ -55,7 +62,7 @@ class FileScene {
   int samples_ = 1;
 };
 
-/// Writes an array of shape (h, w) or (h, w, 3) as a picture; `srgb`: a PNG through that curve.
+/// Writes an array of shape (h, w), (h, w, 3) or (h, w, 4) as a picture; `srgb`: a PNG through that curve.
 void write_picture(py::handle path, py::handle image, bool srgb);
 
 }  // namespace grelha::python

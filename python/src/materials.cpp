@@ -15,15 +15,19 @@ Float3 color_of(const std::array<double, 3>& p, const char* name) {
   return {float(p[0]), float(p[1]), float(p[2])};
 }
 
-/// Bytes are sRGB, other numbers light.
-void put_colors(py::handle given, Triangles& triangles) {
+bool put_colors(py::handle given, Scene& scene) {
+  Triangles& triangles = scene.geometry.triangles;
   const bool bytes = py::isinstance<py::array_t<std::uint8_t>>(given);
   const Triples v(given, "colors");
-  if (v.full_shape() != Shape{py::ssize_t(triangles.vertex_count()), 3})
+  const auto shape = [](std::size_t count) { return Shape{py::ssize_t(count), 3}; };
+  const bool of_vertices = v.full_shape() == shape(triangles.vertex_count());
+  if (!of_vertices && v.full_shape() != shape(triangles.size()))
     wrong_value("colors",
-                "shape (" + std::to_string(triangles.vertex_count()) + ", 3), one a vertex",
+                "shape " + text_of(shape(triangles.vertex_count())) + " or " +
+                    text_of(shape(triangles.size())) + ", one a vertex or a face",
                 text_of(v.full_shape()));
-  std::vector<float>* const channels[] = {&triangles.red, &triangles.green, &triangles.blue};
+  Mesh mesh;
+  std::vector<float>* const channels[] = {&mesh.red, &mesh.green, &mesh.blue};
   for (std::size_t axis = 0; axis < 3; ++axis)
     for (std::size_t i = 0; i < v.count(); ++i) {
       const double number = v.points().at(i, axis);
@@ -32,6 +36,14 @@ void put_colors(py::handle given, Triangles& triangles) {
         wrong_value("colors", "uint8, or numbers from 0 to 1", std::to_string(number));
       channels[axis]->push_back(light);
     }
+  if (of_vertices) {
+    triangles.red = std::move(mesh.red);
+    triangles.green = std::move(mesh.green);
+    triangles.blue = std::move(mesh.blue);
+  } else {
+    triangles.material = materials_of_colors(mesh, scene.materials, 0);
+  }
+  return of_vertices;
 }
 
 namespace {
@@ -58,6 +70,15 @@ float at_least_0(py::handle given, const std::string& name) {
 
 }  // namespace
 
+double smoothness_in(py::handle given) {
+  if (given.is_none())
+    return 0;
+  const double degrees = number_in(given, "smooth");
+  if (!(degrees > 0 && degrees <= 180))
+    wrong_value("smooth", "degrees above 0, at most 180", std::to_string(degrees));
+  return degrees;
+}
+
 MeshOptions meshes_in(bool colors, py::handle points, py::handle smooth) {
   MeshOptions meshes{.colors = colors};
   if (py::isinstance<py::str>(points) && points.equal(py::str("auto"))) {
@@ -67,11 +88,7 @@ MeshOptions meshes_in(bool colors, py::handle points, py::handle smooth) {
     if (!(*meshes.point_radius > 0 && *meshes.point_radius <= kLargest))
       wrong_value("points", "\"auto\" or a radius above 0", std::to_string(*meshes.point_radius));
   }
-  if (!smooth.is_none()) {
-    meshes.smooth_deg = number_in(smooth, "smooth");
-    if (!(meshes.smooth_deg > 0 && meshes.smooth_deg <= 180))
-      wrong_value("smooth", "degrees above 0, at most 180", std::to_string(meshes.smooth_deg));
-  }
+  meshes.smooth_deg = smoothness_in(smooth);
   return meshes;
 }
 
@@ -79,6 +96,7 @@ void put_material(py::handle given, std::vector<Material>& materials) {
   if (!py::isinstance<py::dict>(given))
     wrong_type("material", "a dict", given);
   std::optional<Float3> diffuse;
+  bool glows = false;
   Material m = materials.at(0);
   for (const auto& [key, value] : py::reinterpret_borrow<py::dict>(given)) {
     const std::string field = py::str(key), name = "material[" + field + ']';
@@ -91,6 +109,7 @@ void put_material(py::handle given, std::vector<Material>& materials) {
                           : field == "ior"          ? &m.ior
                           : field == "roughness"    ? &m.roughness
                                                     : nullptr;
+    glows |= field == "emission";
     if (field == "diffuse")
       diffuse = color_in(value, name);
     else if (color)
@@ -107,6 +126,8 @@ void put_material(py::handle given, std::vector<Material>& materials) {
     throw py::value_error("material[ior]: expected a number above 0");
   for (Material& one : materials) {
     m.diffuse = one.diffuse;
+    if (!glows)
+      m.emission = one.emission;
     one = m;
     if (diffuse && materials.size() == 1)
       one.diffuse = *diffuse;

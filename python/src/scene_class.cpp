@@ -31,14 +31,16 @@ ViewArguments view_in(const py::tuple& v) {
 
 void define_scene(py::module_& module) {
   py::register_exception_translator(translate);
-  module.def("scene_of_mesh",
-             [](py::handle vertices,
-                py::handle faces,
-                py::handle colors,
-                py::handle material,
-                py::handle threads) {
-               return FileScene::of_mesh(vertices, faces, colors, material, threads_in(threads));
-             });
+  module.def(
+      "scene_of_mesh",
+      [](py::handle vertices,
+         py::handle faces,
+         py::handle colors,
+         py::handle smooth,
+         py::handle material,
+         py::handle threads) {
+        return FileScene::of_mesh({vertices, faces, colors, smooth, material}, threads_in(threads));
+      });
   module.def("scene_of_file",
              [](py::handle path,
                 bool colors,
@@ -64,16 +66,18 @@ void define_scene(py::module_& module) {
       [](const FileScene& self, py::handle origins, py::handle directions, py::handle wanted) {
         return self.surfaces(origins, directions, threads_in(wanted));
       });
-  scene.def("render",
-            [](const FileScene& self,
-               const py::tuple& view,
-               py::handle samples,
-               py::handle error,
-               py::handle seed,
-               py::handle depth,
-               py::handle threads) {
-              return self.render({view_in(view), samples, error, seed, depth, threads});
-            });
+  scene.def(
+      "render",
+      [](const FileScene& self,
+         const py::tuple& view,
+         py::handle samples,
+         py::handle error,
+         py::handle seed,
+         py::handle depth,
+         bool transparent,
+         py::handle threads) {
+        return self.render({view_in(view), samples, error, seed, depth, transparent, threads});
+      });
   module.def("write_image", write_picture);
 }
 

@@ -136,7 +136,7 @@ class Misuses(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "a.png")
             for bad, kind in ((None, TypeError), ("a", TypeError), (1, ValueError),
-                              (np.zeros(3), ValueError), (np.zeros((2, 2, 4)), ValueError),
+                              (np.zeros(3), ValueError), (np.zeros((2, 2, 5)), ValueError),
                               (np.zeros((0, 2)), ValueError), (np.zeros((2, 2), bool), TypeError)):
                 self.refused("image", kind, grelha.write_image, path, bad)
             self.refused("path", ValueError, grelha.write_image, path + ".jpg", np.zeros((2, 2)))

@@ -7,7 +7,7 @@ import unittest
 import numpy as np
 
 import grelha
-from meshes import ball, soup
+from meshes import CUBE, CUBE_FACES, ball, soup
 
 SOURCES = pathlib.Path(__file__).resolve().parent.parent.parent
 SCANS = SOURCES.parent / "shared" / "scenes" / "ply"
@@ -90,6 +90,81 @@ class FromAllSides(unittest.TestCase):
                     mine = folder / "mine.pfm"
                     grelha.write_image(mine, scene.render(SIDE, SIDE, orbit=view))
                     self.assertEqual(mine.read_bytes(), picture, (path.name, view))
+
+
+class Meshes(unittest.TestCase):
+    def test_colors_of_faces(self):
+        vertices, faces = ball(8)
+        rng = np.random.default_rng(4)
+        encoded = rng.integers(0, 256, (len(faces), 3), np.uint8)
+        share = encoded / 255
+        light = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
+        scene = grelha.Scene(vertices, faces, colors=encoded, material={"diffuse": (1, 0.5, 0.25)})
+        again = __import__("pickle").loads(__import__("pickle").dumps(scene))
+        rays = scene.camera_rays(40, 40)
+        for one in (scene, again):
+            found = one.surfaces(*rays)
+            hits = one.world.closest(*rays)
+            there = hits.id >= 0
+            np.testing.assert_allclose(
+                found.colors[there], light[hits.face[there]] * (1, 0.5, 0.25), rtol=1e-6)
+        black = grelha.Scene(vertices, faces, colors=np.zeros_like(encoded),
+                             material={"specular": 0}).render(40, 40, background=(0, 0, 0))
+        self.assertEqual(black.max(), 0)
+        self.assertIsNone(scene.colors)
+        with self.assertRaisesRegex(ValueError, r"colors: expected shape \(114, 3\) or \(224, 3\)"):
+            grelha.Scene(vertices, faces, colors=encoded[1:])
+
+    def test_smooth(self):
+        vertices, faces = ball(12)
+        faces = np.concatenate([faces, [[0, 0, 1]]])  # without area
+        flat = grelha.Scene(vertices, faces)
+        round_ = grelha.Scene(vertices, faces, smooth=60, colors=np.ones_like(vertices))
+        rays = flat.camera_rays(40, 40)
+        seen = [s.surfaces(*rays) for s in (flat, round_)]
+        there = seen[0].id >= 0
+        np.testing.assert_array_equal(seen[0].id, seen[1].id)
+        off = [np.linalg.norm(s.normals - s.points, axis=-1)[there].max() for s in seen]
+        self.assertTrue(off[1] < 0.05 < off[0], off)
+        self.assertEqual(len(grelha.Scene(CUBE, CUBE_FACES, smooth=80).vertices), 24)
+        self.assertEqual(len(grelha.Scene(CUBE, CUBE_FACES, smooth=100).vertices), 8)
+        for wrong in (0, 181, np.nan):
+            with self.assertRaisesRegex(ValueError, "smooth"):
+                grelha.Scene(vertices, faces, smooth=wrong)
+
+    def test_transparent(self):
+        scene = grelha.Scene(*bumpy())
+        image = scene.render(40, 40, transparent=True)
+        self.assertEqual(image.shape, (40, 40, 4))
+        alpha = image[..., 3:]
+        over = image[..., :3] + (1 - alpha) * np.float32((1, 0, 2))
+        np.testing.assert_allclose(over, scene.render(40, 40, background=(1, 0, 2)), atol=2e-6)
+        self.assertTrue((alpha == 0).any() and (alpha == 1).any() and (alpha % 1 > 0).any())
+        with self.assertRaisesRegex(ValueError, "transparent"):
+            scene.render(8, 8, transparent=True, error=0.1)
+        with tempfile.TemporaryDirectory() as folder:
+            for ending in ("pfm", "hdr"):
+                with self.assertRaisesRegex(ValueError, "image: expected three channels"):
+                    grelha.write_image(f"{folder}/a.{ending}", image)
+            with self.assertRaisesRegex(ValueError, "image: expected shape"):
+                grelha.write_image(f"{folder}/a.png", image[..., :2])
+            self.expect_bytes_of_the_program(pathlib.Path(folder))
+
+    def expect_bytes_of_the_program(self, folder):
+        program = pathlib.Path(grelha.__file__).parents[2] / "grelha"
+        if not program.exists():
+            self.skipTest(f"there is no {program}")
+        mesh = write_ply(folder / "bumpy.ply", *bumpy())
+        image = grelha.read(mesh).render(40, 40, transparent=True)
+        for ending, begin in (("png", b"IDAT"), ("exr", b"screenWindowWidth")):
+            subprocess.run([program, "render", mesh, "--size", "40x40", "-q", "--transparent",
+                            "-o", folder / f"a.{ending}"], check=True)
+            grelha.write_image(folder / f"b.{ending}", image)
+            pixels = [(folder / f"{name}.{ending}").read_bytes().split(begin, 1)[1]
+                      for name in "ab"]
+            if ending == "exr":  # offsets of blocks, which notes before them move
+                pixels = [p[-2000:] for p in pixels]
+            self.assertEqual(*pixels)
 
 
 if __name__ == "__main__":

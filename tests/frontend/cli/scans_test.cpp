@@ -73,6 +73,24 @@ TEST_F(Scans, ASheetHasAllViews) {
   EXPECT_EQ(sheet.substr(12 * 16, 12), sheet.substr(12 * 23, 12)) << "no sixth view";
 }
 
+/// Alone, on a turntable and on its sheet; a picture says how it was made.
+TEST_F(Scans, TransparentPicturesAreThoseOfTheirViews) {
+  const std::string render = "render scan.ply --size 12x9 --transparent ";
+  expect_fine(render + "--turntable 2 -o v{}.png");
+  for (const int k : {0, 1}) {
+    expect_fine(render + "-o one.png --orbit " + std::to_string(180 * k) + ",0");
+    EXPECT_EQ(folder_.read("one.png"), folder_.read("v" + std::to_string(k) + ".png"));
+  }
+  EXPECT_NE(folder_.read("one.png").find(" transparent colors=light"), std::string::npos);
+  expect_fine(render + "--turntable 1 -o sheet.png");
+  EXPECT_EQ(folder_.read("sheet.png"), folder_.read("v0.png"));
+  expect_fine(render + "-o a.exr --layers id --stats stats.json -j 1");
+  EXPECT_EQ(run("compare a.exr one.png").status, 1);
+  const Outcome away = run(render + "--eye 9,9,9 --at 10,10,10 --strict -o away.png");
+  EXPECT_EQ(away.status, 2);
+  EXPECT_NE(away.err.find("shows the background alone"), std::string::npos) << away.err;
+}
+
 TEST_F(Scans, TurntablesThatCannotBe) {
   const auto error = [&](const std::string& arguments) {
     const Outcome made = run("render scan.ply " + arguments);

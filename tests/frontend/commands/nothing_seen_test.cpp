@@ -53,7 +53,9 @@ TEST(NothingSeen, BackgroundAlone) {
     image.rgb[20] += seen ? .01f : 0;
     Lines lines;
     warn_empty_image(
-        "x.nff", file.scene, image, [&](const std::string& line) { lines.push_back(line); });
+        "x.nff", file.scene.geometry, file.scene.background, image, [&](const std::string& line) {
+          lines.push_back(line);
+        });
     EXPECT_EQ(lines.size(), seen ? 0u : 1u);
   }
 }
