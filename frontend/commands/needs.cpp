@@ -50,7 +50,7 @@ Needs needs_of(const SceneFile& file) {
           {"fresnel", some([](const Material& m) { return m.fresnel && m.transmission > 0; })},
           {"emission", some([](const Material& m) { return any(m.emission); })},
           {"roughness", some([](const Material& m) { return m.roughness > 0; })},
-          {"area_lights", !file.area_lights.empty()},
+          {"area_lights", std::ranges::any_of(file.scene.lights, &Light::is_area)},
           {"lens", file.lens.present && file.lens.aperture > 0},
           {"environment", !file.environment.empty()}};
 }

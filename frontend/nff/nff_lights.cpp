@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 namespace grelha {
 namespace {
@@ -28,34 +29,36 @@ Float3 unit(const Float3& a) {
   return l > 0 ? Float3{float(a.x / l), float(a.y / l), float(a.z / l)} : Float3{0, 0, 1};
 }
 
+Light parallelogram(const Float3& corner,
+                    const Float3& edge1,
+                    const Float3& edge2,
+                    const Float3& color) {
+  return {corner + 0.5f * (edge1 + edge2), color, edge1, edge2};
+}
+
 /// A rectangle centered at a position, facing `at`.
-AreaLight facing(
+Light facing(
     const Float3& center, const Float3& at, float width, float height, const Float3& color) {
   const Float3 view = unit(at - center);
   const Float3 side =
       unit(cross(view, std::abs(view.z) < 0.9f ? Float3{0, 0, 1} : Float3{0, 1, 0}));
-  AreaLight light;
-  light.edge1 = width * side;
-  light.edge2 = height * cross(side, view);
-  light.corner = center - 0.5f * (light.edge1 + light.edge2);
-  light.color = color;
-  return light;
+  return {center, color, width * side, height * cross(side, view)};
 }
 
 }  // namespace
 
-void NffLights::add_point(Float3 position, Float3 color) {
-  file_.scene.lights.push_back({position, color, {}, {}});
+void NffLights::add(NffInput& input, std::string_view keyword, const Light& light) {
+  if (!is_finite_float(light.position))
+    throw ParseError(input.position(keyword),
+                     "expected an area light within 1e18, found a larger one");
+  file_.scene.lights.push_back(light);
   ++file_.counts.lights;
 }
 
-void NffLights::read_point(NffInput& input) {
-  const Float3 position = input.bounded_framed_point("the light's position");
-  if (!looks_like_number(input.words.peek_on_line())) {
-    colorless_.push_back(file_.scene.lights.size());
-    add_point(position, {});
-    return;
-  }
+/// The color that follows on this line, if one does.
+std::optional<Float3> NffLights::color_on_line(NffInput& input) {
+  if (!looks_like_number(input.words.peek_on_line()))
+    return {};
   float color[3];
   for (float& part : color) {
     const std::string_view word = input.words.peek_on_line();
@@ -63,38 +66,35 @@ void NffLights::read_point(NffInput& input) {
       throw ParseError(input.position(word), "a number for the light's color", "end of line");
     part = input.bounded("the light's color");
   }
-  add_point(position, {color[0], color[1], color[2]});
+  return Float3{color[0], color[1], color[2]};
 }
 
-void NffLights::add_area(NffInput& input, std::string_view keyword, AreaLight light) {
-  const Float3 center = light.corner + 0.5f * (light.edge1 + light.edge2);
-  if (!is_finite_float(center))
-    throw ParseError(input.position(keyword),
-                     "expected an area light within 1e18, found a larger one");
-  light.light = std::uint32_t(file_.scene.lights.size());
-  file_.area_lights.push_back(light);
-  add_point(center, light.color);
-  file_.scene.lights.back().edge1 = light.edge1;
-  file_.scene.lights.back().edge2 = light.edge2;
+/// A seventh number makes an intensity of the fourth: ENFF.
+void NffLights::read_point(NffInput& input, std::string_view keyword) {
+  const Float3 position = input.bounded_framed_point("the light's position");
+  std::optional<Float3> color = color_on_line(input);
+  if (!color)
+    colorless_.push_back(file_.scene.lights.size());
+  else if (looks_like_number(input.words.peek_on_line()))
+    color = color->x * Float3{color->y, color->z, input.bounded("the light's color")};
+  add(input, keyword, {position, color.value_or(Float3{}), {}, {}});
 }
 
 void NffLights::read_light(NffInput& input, std::string_view keyword) {
   const std::string_view kind = input.words.next();
   if (kind == "punctual") {
     const Float3 position = input.bounded_framed_point("the light's position");
-    add_point(position, input.bounded_point("the light's color"));
+    add(input, keyword, {position, input.bounded_point("the light's color"), {}, {}});
   } else if (kind == "quad") {
-    AreaLight light;
-    light.corner = input.bounded_framed_point("the light's corner");
-    light.color = input.bounded_point("the light's color");
-    light.edge1 = input.bounded_framed_point("the light's second corner") - light.corner;
-    light.edge2 = input.bounded_framed_point("the light's third corner") - light.corner;
+    const Float3 corner = input.bounded_framed_point("the light's corner");
+    const Float3 color = input.bounded_point("the light's color");
+    const Float3 second = input.bounded_framed_point("the light's second corner"),
+                 third = input.bounded_framed_point("the light's third corner");
     const std::string_view samples = input.words.next();
     std::int64_t count = 0;
     if (!to_integer(samples, count) || count < 0 || count > 1000000)
       input.fail(samples, "a whole number, at most 1000000, for the light's samples");
-    light.samples = int(count);
-    add_area(input, keyword, light);
+    add(input, keyword, parallelogram(corner, second - corner, third - corner, color));
   } else {
     input.fail(kind, "\"punctual\" or \"quad\" after \"light\"");
   }
@@ -110,22 +110,51 @@ void NffLights::read_area(NffInput& input, std::string_view keyword) {
   if (n.size() == 11) {
     const float width = frame.length(double{n[6].value});
     const float height = frame.length(double{n[7].value});
-    add_area(
-        input,
+    add(input,
         keyword,
         facing(framed_point(frame, n, 0), framed_point(frame, n, 3), width, height, triple(n, 8)));
     return;
   }
-  AreaLight light;
-  light.corner = framed_point(frame, n, 0);
-  light.edge1 = vector(frame, n, 3);
-  light.edge2 = vector(frame, n, 6);
-  light.color = triple(n, 9);
-  add_area(input, keyword, light);
+  add(input,
+      keyword,
+      parallelogram(
+          framed_point(frame, n, 0), vector(frame, n, 3), vector(frame, n, 6), triple(n, 9)));
+}
+
+/// Of programs in which light falls off with distance.
+void NffLights::add_scaled(NffInput& input, std::string_view keyword, const Light& light) {
+  input.warn_once(
+      "power of light",
+      keyword,
+      "light does not fall off here: the brightest light of \"L\", \"la\" and \"ls\" gets "
+      "the power 1");
+  scaled_.push_back(file_.scene.lights.size());
+  add(input, keyword, light);
+}
+
+/// `la`: corner and two edges; `ls`: radius and centre; then a color, or white.
+void NffLights::read_shape(NffInput& input, std::string_view keyword) {
+  const std::size_t enough = keyword == "la" ? 9 : 4;
+  const std::vector<NumberWord> n = input.numbers(enough, "the light");
+  if (n.size() != enough && n.size() != enough + 3)
+    input.fail(
+        input.words.peek(),
+        std::to_string(enough) + " or " + std::to_string(enough + 3) + " numbers for the light");
+  const Float3 color = n.size() == enough ? Float3{1, 1, 1} : triple(n, enough);
+  const Frame& frame = input.frame;
+  if (keyword == "la") {
+    add_scaled(
+        input,
+        keyword,
+        parallelogram(framed_point(frame, n, 0), vector(frame, n, 3), vector(frame, n, 6), color));
+    return;
+  }
+  input.warn_once("ls", keyword, "a light that is a ball is drawn as a point");
+  add_scaled(input, keyword, {framed_point(frame, n, 1), color, {}, {}});
 }
 
 /// `r g b power`, and perhaps `atten` and three numbers of how the light falls off.
-void NffLights::read_glow(NffInput& input, std::string_view keyword) {
+void NffLights::read_glow(NffInput& input) {
   const Float3 color = input.bounded_point("the light's color");
   const float power = input.bounded("the light's power");
   if (input.words.peek_on_line() == "atten") {
@@ -133,11 +162,6 @@ void NffLights::read_glow(NffInput& input, std::string_view keyword) {
     input.bounded_point("the light's falloff");
   }
   glow_ = power * color;
-  if (glows())
-    input.warn_once("L",
-                    keyword,
-                    "polygons behind \"L\" are area lights; light does not fall off here, so the "
-                    "brightest of them gets the power 1");
 }
 
 bool NffLights::read_glowing(NffInput& input, std::string_view keyword) {
@@ -160,29 +184,21 @@ bool NffLights::read_glowing(NffInput& input, std::string_view keyword) {
                     "it does not shine");
     return false;
   }
-  AreaLight light;
-  light.corner = a;
-  light.edge1 = b - a;
-  light.edge2 = d - a;
-  light.color = glow_;
-  glowing_.push_back(file_.area_lights.size());
-  add_area(input, keyword, light);
+  add_scaled(input, keyword, parallelogram(a, b - a, d - a, glow_));
   return true;
 }
 
-/// Scales the lights of `L` to a largest component of 1: their powers assume light that falls off
-/// with distance.
-void NffLights::finish_glowing() {
+/// Scales lights to a largest component of 1.
+void NffLights::finish_scaled() {
   float most = 0;
-  for (const std::size_t i : glowing_) {
-    const Float3& color = file_.area_lights[i].color;
+  for (const std::size_t i : scaled_) {
+    const Float3& color = file_.scene.lights[i].color;
     most = std::max({most, color.x, color.y, color.z});
   }
-  for (const std::size_t i : glowing_) {
-    AreaLight& light = file_.area_lights[i];
+  for (const std::size_t i : scaled_) {
+    Float3& color = file_.scene.lights[i].color;
     if (most > 0)
-      light.color = {light.color.x / most, light.color.y / most, light.color.z / most};
-    file_.scene.lights[light.light].color = light.color;
+      color = {color.x / most, color.y / most, color.z / most};
   }
 }
 
@@ -191,7 +207,7 @@ void NffLights::finish() {
   const auto even = float(1 / std::sqrt(double(file_.scene.lights.size())));
   for (const std::size_t i : colorless_)
     file_.scene.lights[i].color = {even, even, even};
-  finish_glowing();
+  finish_scaled();
 }
 
 }  // namespace grelha

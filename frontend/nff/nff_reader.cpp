@@ -62,7 +62,7 @@ class NffReader {
   void read_simple(std::string_view keyword);
   void read_texture(std::string_view keyword);
   void read_mat(std::string_view keyword);
-  void read_l(std::string_view) { lights_.read_point(input_); }
+  void read_l(std::string_view keyword) { lights_.read_point(input_, keyword); }
   void read_b(std::string_view) {
     file_.scene.background = input_.bounded_point("the background's color");
   }
@@ -74,7 +74,9 @@ class NffReader {
   void read_ply(std::string_view keyword);
   void read_light(std::string_view keyword) { lights_.read_light(input_, keyword); }
   void read_al(std::string_view keyword) { lights_.read_area(input_, keyword); }
-  void read_glow(std::string_view keyword) { lights_.read_glow(input_, keyword); }
+  void read_shape(std::string_view keyword) { lights_.read_shape(input_, keyword); }
+  void read_glow(std::string_view) { lights_.read_glow(input_); }
+  void read_beam(std::string_view keyword);
   void read_env(std::string_view keyword);
   void read_accel(std::string_view keyword);
   void read_spp(std::string_view keyword);
@@ -107,6 +109,9 @@ const NffReader::Named NffReader::kEntities[] = {
     {"L", &NffReader::read_glow},      {"material", &NffReader::read_simple},
     {"t", &NffReader::read_texture},   {"ppt", &NffReader::read_simple},
     {"pt", &NffReader::read_simple},   {"st", &NffReader::read_simple},
+    {"la", &NffReader::read_shape},    {"ls", &NffReader::read_shape},
+    {"lf", &NffReader::read_beam},     {"ld", &NffReader::read_beam},
+    {"B", &NffReader::read_env},
 };
 
 /// Warns of NUL bytes: they separate words as spaces do, which is seldom intended.
@@ -296,6 +301,13 @@ void NffReader::read_ply(std::string_view keyword) {
     warning_list_.add_line(path + ": warning: " + text);
   file_.counts.ply += faces;
   file_.meshes.push_back(path);
+}
+
+/// Spotlights and light from one direction.
+void NffReader::read_beam(std::string_view keyword) {
+  input_.numbers(0, "the light");
+  input_.warn_once(
+      keyword, keyword, "lights of " + quoted(keyword) + " are left out: they shine one way");
 }
 
 void NffReader::read_env(std::string_view keyword) {

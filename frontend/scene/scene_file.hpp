@@ -35,14 +35,6 @@ struct LensHint {
   double focal = 1;     ///< focal distance as a multiple of the distance from eye to `at`
 };
 
-/// A parallelogram light as the file states it: corner, two edges. Its light in the scene stands at
-/// its centre.
-struct AreaLight {
-  Float3 corner, edge1, edge2, color;
-  int samples = 0;          ///< as the file asks; 0: not said
-  std::uint32_t light = 0;  ///< index into Scene::lights
-};
-
 /// The order in which the six numbers of a file's `aabb` were read.
 enum class BoxOrder : std::uint8_t {
   kNone,      ///< the file has no `aabb`
@@ -74,7 +66,6 @@ struct SceneFile {
   Dropped dropped;
   std::uint64_t points = 0;  ///< vertices of meshes without faces
   LensHint lens;
-  std::vector<AreaLight> area_lights;
   std::string accelerator;    ///< `accel` hint as written, or empty
   int samples_per_pixel = 0;  ///< `spp` hint, 0: none
   BoxOrder box_order = BoxOrder::kNone;

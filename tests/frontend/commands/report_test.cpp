@@ -94,7 +94,7 @@ TEST(Needs, FollowGeometryAndCamera) {
   EXPECT_FALSE(needs(file, "lens")) << "a lens without width is a pinhole";
   t.nz[1] = 1;
   file.lens.aperture = 2;
-  file.area_lights.push_back({});
+  file.scene.lights = {{{}, {}, {1, 0, 0}, {0, 1, 0}}};
   EXPECT_TRUE(needs(file, "smooth_normals"));
   EXPECT_TRUE(needs(file, "lens"));
   EXPECT_TRUE(needs(file, "area_lights"));

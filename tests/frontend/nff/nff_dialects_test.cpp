@@ -98,21 +98,49 @@ TEST(NffDialects, PolygonsShine) {
       "L 1 .5 0 20 atten 0 0 1\np 4 -1 2 -1 1 2 -1 1 2 1 -1 2 1\np 3 0 0 0 1 0 0 0 1 0\n"
       "L 1 0 0 40\npp 4 0 0 0 0 0 1 2 0 0 0 0 1 2 2 0 0 0 1 0 2 0 0 0 1\n"
       "L 0 0 0 0\np 4 0 0 0 1 0 0 1 1 0 0 1 0\n");
-  ASSERT_EQ(r.file.area_lights.size(), 2u);
+  ASSERT_EQ(r.file.scene.lights.size(), 2u);
   EXPECT_EQ(r.file.counts.p, 2u);
-  const AreaLight& first = r.file.area_lights[0];
-  EXPECT_EQ(first.corner, (Float3{-1, 2, -1}));
+  const Light& first = r.file.scene.lights[0];
+  EXPECT_EQ(first.position, (Float3{0, 2, 0}));
   EXPECT_EQ(first.edge1, (Float3{2, 0, 0}));
   EXPECT_EQ(first.edge2, (Float3{0, 0, 2}));
   EXPECT_EQ(first.color, (Float3{.5f, .25f, 0}));
-  EXPECT_EQ(r.file.scene.lights[0].color, first.color);
   EXPECT_EQ(r.file.scene.lights[1].color, (Float3{1, 0, 0}));
   EXPECT_EQ(r.file.scene.lights[1].edge2, (Float3{0, 2, 0}));
   EXPECT_EQ(r.warnings,
-            (Lines{"scene.nff:9:1: warning: polygons behind \"L\" are area lights; light does not "
-                   "fall off here, so the brightest of them gets the power 1",
+            (Lines{"scene.nff:10:1: warning: light does not fall off here: the brightest light of "
+                   "\"L\", \"la\" and \"ls\" gets the power 1",
                    "scene.nff:11:1: warning: a polygon behind \"L\" that is no parallelogram; it "
                    "does not shine"}));
+}
+
+TEST(NffDialects, LightsOfOtherTracers) {
+  const Reading r = read_with_view(kFill +
+                                   "la 1 2 3  2 0 0  0 0 4  50 100 25\nla 0 0 0 1 0 0 0 1 0\n"
+                                   "ls 15 1 2 3 10 20 30\nls 2 0 0 1\n"
+                                   "lf 0 0 -2  0 0 -1  10 .3 .3 .3\nld .7 -.7 1 10 5 0\n"
+                                   "l 1 2 3  2  .5 .25 1\n"
+                                   "s 0 0 0 1\n");
+  const std::vector<Light>& lights = r.file.scene.lights;
+  ASSERT_EQ(lights.size(), 5u);
+  EXPECT_EQ(r.file.counts.lights, 5u);
+  EXPECT_EQ(lights[0].position, (Float3{2, 2, 5}));
+  EXPECT_EQ(lights[0].edge1, (Float3{2, 0, 0}));
+  EXPECT_EQ(lights[0].edge2, (Float3{0, 0, 4}));
+  EXPECT_EQ(lights[0].color, (Float3{.5f, 1, .25f}));
+  EXPECT_EQ(lights[1].color, (Float3{.01f, .01f, .01f}));
+  EXPECT_EQ(lights[2].position, (Float3{1, 2, 3}));
+  EXPECT_EQ(lights[2].color, (Float3{.1f, .2f, .3f}));
+  EXPECT_EQ(lights[3].position, (Float3{0, 0, 1}));
+  EXPECT_EQ(lights[4].color, (Float3{1, .5f, 2})) << "an intensity and a color, as in ENFF";
+  EXPECT_EQ(r.warnings,
+            (Lines{"scene.nff:9:1: warning: light does not fall off here: the brightest light of "
+                   "\"L\", \"la\" and \"ls\" gets the power 1",
+                   "scene.nff:11:1: warning: a light that is a ball is drawn as a point",
+                   "scene.nff:13:1: warning: lights of \"lf\" are left out: they shine one way",
+                   "scene.nff:14:1: warning: lights of \"ld\" are left out: they shine one way"}));
+  EXPECT_EQ(message_of([] { read_with_view(kFill + "ls 1 2 3\ns 0 0 0 1\n"); }),
+            "scene.nff:10:1: error: expected 4 or 7 numbers for the light, found \"s\"");
 }
 
 TEST(NffDialects, Sense8IsNamedWhateverFollows) {
