@@ -326,7 +326,7 @@ void add_compare(CLI::App& app, CompareCommand& command) {
   CLI::App& sub =
       *app.add_subcommand("compare", "Measure how far two pictures of one size lie apart");
   sub.footer(
-      "Example: grelha compare a.png b.png --max-rmse 0.01 --diff d.png\n"
+      "Example: grelha compare a.png b.png --max-rmse 0.01\n"
       "Exit status: 0; 1 above --max-rmse or when a file cannot be read;\n"
       "2 for bad usage or unequal sizes.");
   positional(sub, "A", command.a, "picture (.png, .hdr, .pfm, .exr)");
@@ -339,8 +339,6 @@ void add_compare(CLI::App& app, CompareCommand& command) {
   sub.add_flag("--display",
                command.display,
                "compare what a screen shows: each channel cut to 0 to 1 first");
-  image_file(
-      sub, "--diff", command.diff, "write |A - B|; in a .png the largest difference is made white");
 }
 
 void add_merge(CLI::App& app, MergeCommand& command) {

@@ -95,7 +95,6 @@ struct CompareCommand {
   std::string a, b;
   std::optional<double> max_rmse;
   bool display = false;  ///< compare displayed values, channels from 0 to 1
-  std::string diff;      ///< file for the picture of the difference, or empty
 };
 
 struct MergeCommand {

@@ -11,9 +11,6 @@ namespace grelha {
 /// difference, so it can never pass for small.
 struct Comparison {
   double rmse = 0;
-  double psnr_db = 0;  ///< against white 1; infinite for equal pictures
-  /// mean of (a - b)^2 / (b^2 + .01): b is the reference
-  double relative_mse = 0;
   double largest = 0;  ///< of the differences between channels
   int largest_x = 0, largest_y = 0;
   std::uint64_t pixels = 0, different = 0;
@@ -23,8 +20,5 @@ Comparison compare(const Image& a, const Image& b);
 
 /// Clamps every channel to 0 to 1, as a screen does, infinities too. A NaN stays a NaN.
 Image displayed(Image image);
-
-/// |a - b|, times `scale`.
-Image difference(const Image& a, const Image& b, double scale);
 
 }  // namespace grelha

@@ -16,12 +16,10 @@ TEST_F(Program, ComparesAndSetsItsStatus) {
   ASSERT_EQ(run("render ball.nff -o b.png --quiet").status, 0);
   ASSERT_EQ(run("render ball.nff -o c.png --quiet --size 8x8").status, 0);
   EXPECT_EQ(run("compare a.pfm a.pfm --max-rmse 0").out,
-            "RMSE 0, PSNR inf dB, largest difference 0 at (0, 0), 0 of 384 pixels differ\n"
-            "relative MSE 0\n");
+            "RMSE 0, largest difference 0 at (0, 0), 0 of 384 pixels differ\n");
   EXPECT_EQ(run("compare a.pfm a.pfm --max-rmse 0").status, 0);
   EXPECT_EQ(run("compare a.pfm b.png --max-rmse 0.01").status, 0) << "half a byte at most";
-  EXPECT_EQ(run("compare a.pfm b.png --max-rmse 0 --diff d.png").status, 1);
-  EXPECT_EQ(folder_.read("d.png").substr(1, 3), "PNG");
+  EXPECT_EQ(run("compare a.pfm b.png --max-rmse 0").status, 1);
   const Outcome sizes = run("compare a.pfm c.png");
   EXPECT_EQ(sizes.status, 2);
   EXPECT_EQ(sizes.err, "grelha: error: the pictures have unequal sizes, 24x16 and 8x8\n");

@@ -186,10 +186,8 @@ TEST(Render, MemoryIsCountedInBytes) {
 
 TEST(Others, AreParsed) {
   EXPECT_TRUE(std::get<InfoCommand>(parse("info x.nff --json")).json);
-  const auto compare =
-      std::get<CompareCommand>(parse("compare a.png b.png --max-rmse 0 --diff d.png"));
+  const auto compare = std::get<CompareCommand>(parse("compare a.png b.png --max-rmse 0"));
   EXPECT_EQ(compare.max_rmse, 0.0);
-  EXPECT_EQ(compare.diff, "d.png");
   EXPECT_FALSE(std::get<CompareCommand>(parse("compare a b")).max_rmse);
   EXPECT_FALSE(compare.display);
   EXPECT_TRUE(std::get<CompareCommand>(parse("compare a b --display")).display);
@@ -315,8 +313,8 @@ const Line kWrong[] = {
      "--max-rmse: expected a number that is not negative, found \"-1\""},
     {"compare a b --max-rmse nan",
      "--max-rmse: expected a number that is not negative, found \"nan\""},
-    {"compare a b --diff d.txt",
-     "--diff: expected a name ending in .png, .hdr, .pfm or .exr, found \"d.txt\""},
+    {"render a --error .1 --error-map d.txt",
+     "--error-map: expected a name ending in .png, .hdr, .pfm or .exr, found \"d.txt\""},
     {"scene", "NAME is required (see grelha scene --list)"},
     {"scene balls --size x", "--size: expected a whole number from 0 to 1000, found \"x\""},
 };
