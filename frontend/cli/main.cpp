@@ -161,15 +161,16 @@ int run(const MergeCommand& command) {
   check_no_terminal(command.output);
   check_not_read({{"-o", command.output}}, command.parts);
   check_writable(command.output);
-  const Partial joined = merge_parts(command.parts);
-  const Accumulator& a = joined.sums;
+  Partial joined = merge_parts(command.parts);
+  const Part part = joined.sums.part;
   if (is_partial_name(command.output)) {
-    write_partial(command.output, joined);
+    write_checkpoint(command.output, joined.identity, Picture(std::move(joined.sums)), false);
   } else {
+    const Accumulator& a = joined.sums;
     const Part whole{{0, a.height}, {0, a.samples}};
-    if (a.part != whole)
-      throw UsageError("the parts are " + part_text(a.part) + ", the picture is " +
-                       part_text(whole) + ": join them to a .grelha");
+    if (part != whole)
+      throw UsageError("the parts are " + part_text(part) + ", the picture is " + part_text(whole) +
+                       ": join them to a .grelha");
     const auto format = format_of(command.output, command.format);
     check_image_size(format, a.width, a.height);
     write_image(command.output,
@@ -180,7 +181,7 @@ int run(const MergeCommand& command) {
   }
   const std::size_t n = command.parts.size();
   const std::string summary = printable_line(name_of_file(command.output)) + ": " +
-                              part_text(a.part) + " from " + std::to_string(n) +
+                              part_text(part) + " from " + std::to_string(n) +
                               (n == 1 ? " part\n" : " parts\n");
   if (!command.quiet)
     report_line(summary, command.output == kStdout);

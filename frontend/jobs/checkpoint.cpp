@@ -106,24 +106,6 @@ Checkpoint parse_body(std::string_view body) {
   return c;
 }
 
-template <class Numbers, class Arrays>
-void write(const std::string& path,
-           const Identity& identity,
-           bool durable,
-           const Numbers& save_numbers,
-           const Arrays& save_arrays) {
-  AtomicFile file(path, durable);
-  Sink sink(file.stream());
-  HeadWriter head;
-  save_numbers(head);
-  const std::string name = identity.name.empty() ? "" : "name " + identity.name + '\n';
-  sink.text(std::string(kMagic) + name + "scene " + identity.scene + "\nsettings " +
-            identity.settings + '\n' + head.text);
-  save_arrays(sink);
-  sink.finish();
-  file.commit();
-}
-
 std::uint64_t checksum_at(std::string_view bytes, std::size_t at) {
   std::uint64_t v = 0;
   Source(bytes.substr(at)).values(v);
@@ -142,24 +124,16 @@ void write_checkpoint(const std::string& path,
                       const Identity& identity,
                       const Picture& picture,
                       bool durable) {
-  write(
-      path,
-      identity,
-      durable,
-      [&](HeadWriter& head) { picture.save_numbers(head); },
-      [&](Sink& sink) { picture.save_arrays(sink); });
-}
-
-void write_part(const std::string& path,
-                const Identity& identity,
-                const Accumulator& part,
-                bool durable) {
-  write(
-      path,
-      identity,
-      durable,
-      [&](HeadWriter& head) { visit_numbers(head, part); },
-      [&](Sink& sink) { visit_arrays(sink, part); });
+  AtomicFile file(path, durable);
+  Sink sink(file.stream());
+  HeadWriter head;
+  picture.save_numbers(head);
+  const std::string name = identity.name.empty() ? "" : "name " + identity.name + '\n';
+  sink.text(std::string(kMagic) + name + "scene " + identity.scene + "\nsettings " +
+            identity.settings + '\n' + head.text);
+  picture.save_arrays(sink);
+  sink.finish();
+  file.commit();
 }
 
 Checkpoint parse_checkpoint(const std::string& path, std::string_view bytes) {

@@ -20,11 +20,6 @@ void write_checkpoint(const std::string& path,
                       const Identity& identity,
                       const Picture& picture,
                       bool durable);
-/// The same of a part.
-void write_part(const std::string& path,
-                const Identity& identity,
-                const Accumulator& part,
-                bool durable);
 
 /// Throws FileError for a file that is damaged or has another format.
 Checkpoint read_checkpoint(const std::string& path);

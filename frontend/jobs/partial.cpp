@@ -28,10 +28,6 @@ bool is_partial_name(std::string_view path) {
   return path.ends_with(".grelha");
 }
 
-void write_partial(const std::string& path, const Partial& partial, bool durable) {
-  write_part(path, partial.identity, partial.sums, durable);
-}
-
 Partial parse_partial(const std::string& path, std::string_view bytes) {
   return part_of(path, parse_checkpoint(path, bytes));
 }

@@ -18,10 +18,6 @@ bool is_partial_name(std::string_view path);
 /// `rows 0:8, samples 16:32`
 std::string part_text(const Part& part);
 
-/// Equal partials make equal files. `durable`: the file is on the disk when this returns; see
-/// AtomicFile.
-void write_partial(const std::string& path, const Partial& partial, bool durable = false);
-
 /// Throws FileError for a file that is damaged, has another format, or is of a picture without
 /// parts.
 Partial read_partial(const std::string& path);

@@ -1,8 +1,8 @@
 // Files of parts: joined, told apart, and refused where they are damaged. A part of parts_test.
 #include "frontend/files/parse_error.hpp"
 #include "frontend/jobs/merge.hpp"
-#include "frontend/jobs/partial.hpp"
 #include "grelha/accumulator.hpp"
+#include "tests/support/partials.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 #include <gtest/gtest.h>

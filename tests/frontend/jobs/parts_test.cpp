@@ -4,10 +4,10 @@
 #include <thread>
 
 #include "frontend/jobs/merge.hpp"
-#include "frontend/jobs/partial.hpp"
 #include "grelha/accumulator.hpp"
 #include "tests/frontend/jobs/job.hpp"
 #include "tests/support/random.hpp"
+#include "tests/support/partials.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 #include <gtest/gtest.h>

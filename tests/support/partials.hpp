@@ -1,0 +1,11 @@
+#pragma once
+
+#include "frontend/jobs/partial.hpp"
+
+namespace grelha {
+
+inline void write_partial(const std::string& path, const Partial& p, bool durable = false) {
+  write_checkpoint(path, p.identity, Picture(p.sums), durable);
+}
+
+}  // namespace grelha
