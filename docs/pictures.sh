@@ -21,6 +21,7 @@ for scene in mount:7 gears:3 boat:10 tree:11; do
 done
 ./run render "$work/boat.nff" --size 384x384 --error 0.001 -o "$work/fine.png" \
   --samples-map "$out/samples-map.png"
-(eval "$(./run python)" && python3 python/recipes/turntable.py -o "$out/turntable.png")
+(eval "$(./run python)" && python3 python/recipes/turntable.py -o "$out/turntable.png" &&
+  python3 python/recipes/distance_slice.py -o "$out/slice.png")
 dot -Tsvg docs/pipeline.dot -o "$out/pipeline.svg"  # Debian: graphviz
 dot -Tsvg docs/error-flow.dot -o "$out/error-flow.svg"
