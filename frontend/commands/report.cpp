@@ -20,11 +20,7 @@ namespace {
 std::uint64_t peak_bytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-#ifdef __APPLE__
-  return std::uint64_t(usage.ru_maxrss);
-#else
   return std::uint64_t(usage.ru_maxrss) * 1024;
-#endif
 }
 
 double share(std::uint64_t part, std::uint64_t whole) {
