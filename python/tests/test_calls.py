@@ -126,7 +126,7 @@ class Starts(unittest.TestCase):
 
 class Names(unittest.TestCase):
     def test_signatures(self):
-        for owner, more in ((grelha.World, []), (grelha.Scene, ["colors", "material"])):
+        for owner, more in ((grelha.World, []), (grelha.Scene, ["colors", "smooth", "material"])):
             self.assertEqual(list(inspect.signature(owner).parameters),
                              ["vertices", "faces", *more, "threads"])
             for name, member in vars(owner).items():
