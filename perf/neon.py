@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Instructions of NEON beside those of SSE2, which has as many lanes: whole pictures, both emulated.
+"""Instructions of NEON beside those of SSE2, which has as many lanes: whole pictures, emulated.
 
     ./run perf neon [--keep]
 
@@ -58,8 +58,8 @@ def main():
                      f"{ratio:.2f}", "yes" if len(pictures) == 1 else "**no**"])
         print(*rows[-1], flush=True)
     head = ["scene", "SSE2: instructions a sample", "NEON", "ratio", "same picture"]
-    bench.section(f"{table(head, rows)}\n\nCommit {commit()}, both by qemu-user 7.2, 16 x 16 pixels."
-                  " `./run perf neon`.")
+    bench.section(f"{table(head, rows)}\n\nCommit {commit()}, both by qemu-user, 16 x 16 pixels. "
+                  "`./run perf neon`.")
     sys.exit(f"neon: above {MOST}: {', '.join(over)}" if over else 0)
 
 

@@ -75,7 +75,8 @@ TRY
       cat <<'TRY'
 dpkg --add-architecture arm64
 apt-get update -qq
-apt-get install -y -qq --no-install-recommends dpkg-dev qemu-user crossbuild-essential-arm64
+apt-get install -y -qq --no-install-recommends dpkg-dev qemu-user crossbuild-essential-arm64 \
+  libgomp1:arm64 libstdc++6:arm64
 cd grelha
 apt-get build-dep -y -qq --no-install-recommends -a arm64 ./
 dpkg-buildpackage -b -us -uc -a arm64
