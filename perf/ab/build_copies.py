@@ -75,12 +75,12 @@ class Copy:
 
     def objects(self):
         """Sources, and options of their own."""
-        known = [] if self.isa == "scalar" else [f"-DGRELHA_{self.isa.upper()}"]
+        known = [f"-DGRELHA_{self.isa.upper()}"]
         hot = [*ISAS[self.isa][0], f"-DGRELHA_ISA={self.isa}"]
         yield HERE / "hot_loops.cpp", hot
         yield self.folder / "rest.cpp", known
         yield HERE / "plugin.cpp", []
-        if known:
+        if self.isa != "scalar":
             yield HERE / "no_loops.cpp", []
 
     def compile(self, source, options):

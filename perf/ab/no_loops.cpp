@@ -1,4 +1,4 @@
-// Stands for the scalar copy, which every build lists and a wider one takes the place of.
+// Stands for the scalar copy, which older commits always list; a wider one takes its place.
 #include "kernel/query/variants.hpp"
 
 namespace grelha::scalar {
