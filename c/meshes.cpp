@@ -124,7 +124,11 @@ grelha_status grelha_add_mesh(grelha_world* world,
   using namespace grelha::c;
   const grelha_status status = change(world, threads, [&](grelha::OffsetScene& scene) {
     expect_there(mesh, "mesh");
-    return add_mesh(scene, arrays_of(*mesh));
+    const grelha::MeshArrays added = arrays_of(*mesh);
+    const grelha::Triangles& all = scene.geometry.triangles;
+    expect_at_most(all.vertex_count() + added.vertices.count, kMostVertices - 2, "vertices of all");
+    expect_at_most(all.size() + added.faces.size(), kMostPrimitives, "triangles of all");
+    return add_mesh(scene, added);
   });
   if (status == GRELHA_OK && number)
     *number = grelha::mesh_count(world->scene()) - 1;

@@ -149,8 +149,8 @@ GRELHA_API grelha_status grelha_offset(const grelha_world* world, double offset[
 /// Moves the vertices of a world of triangles, or the centers of one of spheres. Indices and radii
 /// stay. The grids are built anew: answers are those of a new world, bit for bit.
 ///
-/// Shapes    points: as many as the world was made of, `stride` bytes apart, not 0. They count from
-///           grelha_offset().
+/// Shapes    points: as many as the world has, of all meshes one after the other, `stride` bytes
+///           apart, not 0. They count from grelha_offset().
 /// Errors    as for the function that made the world. The world is then as it was before.
 GRELHA_API grelha_status grelha_update(
     grelha_world* world, const float* points, ptrdiff_t stride, size_t count, int threads);
@@ -194,9 +194,9 @@ typedef struct grelha_mesh_check {
   grelha_ids degenerate;     ///< without area, exactly
 } grelha_mesh_check;
 
-/// Checks the triangles of a world. Exact; takes time in proportion to their number once, and keeps
-/// the answer. Triangles that cross each other are not looked for. Fails with GRELHA_INVALID for
-/// null.
+/// Checks the visible triangles of a world. Exact; takes time in proportion to their number once,
+/// and keeps the answer. Triangles that cross each other are not looked for. Fails with
+/// GRELHA_INVALID for null.
 GRELHA_API grelha_status grelha_check_mesh(const grelha_world* world, grelha_mesh_check* found);
 
 /// One mesh among several. Members that are left out of an initializer are 0 or null.

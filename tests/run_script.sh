@@ -99,6 +99,14 @@ case $said in
   *) echo "what passed was run again: $said"; exit 1 ;;
 esac
 try "$passed" test --again
+rm passing
+failed="${failures}why: LastTest.log|run: tests failed; all that was said is in $log|"
+try "$failed" test --again
+try "$failed" test
+touch passing
+try "$passed" test
+rm project/kernel/new.cpp
+try "run: configuring (release)|run: building everything|$passed" test
 sleep .01
 touch project/README.md
 try "$passed" test

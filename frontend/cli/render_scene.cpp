@@ -229,7 +229,8 @@ class SceneRender {
       const Image image = render_view(world, k, style.alpha);
       if (command_.layers.any())
         style.layers = first_hits(world, camera_, file_.frame, command_.layers);
-      if (command_.turntable == 0)
+      const auto is_clear = [](float alpha) { return alpha == 0; };  // black is no background here
+      if (command_.turntable == 0 && std::ranges::all_of(style.alpha, is_clear))
         warn_empty_image(command_.scene, file_.scene.geometry, {}, image, log_.reporting());
       files.add(k, image, style);
       rays += report_.render.rays;

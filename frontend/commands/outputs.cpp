@@ -86,7 +86,8 @@ void check_distinct(const std::vector<RenderCommand>& commands) {
 void check_image_size(std::optional<ImageFormat> format, int width, int height, bool alpha) {
   if (format && !image_fits(*format, width, height, alpha ? 4 : 3))
     throw UsageError("a picture of " + std::to_string(width) + 'x' + std::to_string(height) +
-                     " is too large for .png and .hdr, write a .pfm or .exr");
+                     " is too large for .png and .hdr, write " +
+                     (alpha ? "an .exr" : "a .pfm or .exr"));
 }
 
 }  // namespace grelha

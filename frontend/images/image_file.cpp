@@ -123,15 +123,20 @@ Image read_pfm(const std::string& path, const std::string& bytes) {
 template <class T>
 using StbPixels = std::unique_ptr<T, void (*)(void*)>;
 
-/// Of four channels a pixel.
+/// Of three channels a pixel, or four.
 template <class T>
-Image from_stb(const std::string& path, StbPixels<T> pixels, int width, int height, float white) {
+Image from_stb(const std::string& path,
+               StbPixels<T> pixels,
+               int width,
+               int height,
+               int channels,
+               float white) {
   if (!pixels)
     throw FileError(path, std::string("cannot read the picture: ") + stbi_failure_reason());
   Image image(width, height);
   const T* from = pixels.get();
-  for (std::size_t i = 0; i < image.rgb.size(); i += 3, from += 4) {
-    if (float(from[3]) != white)
+  for (std::size_t i = 0; i < image.rgb.size(); i += 3, from += channels) {
+    if (channels == 4 && float(from[3]) != white)
       throw FileError(path, kTransparent);
     for (std::size_t c = 0; c < 3; ++c)
       image.rgb[i + c] = float(from[c]) / white;
@@ -146,23 +151,25 @@ Image read_by_stb(const std::string& path, const std::string& bytes, ImageFormat
   const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
   const int size = int(bytes.size());
   int w = 0, h = 0, channels = 0;
+  stbi_info_from_memory(data, size, &w, &h, &channels);
+  const int read = channels == 2 || channels == 4 ? 4 : 3;
   if (format == ImageFormat::hdr) {
     if (!stbi_is_hdr_from_memory(data, size))
       throw FileError(path, "not a Radiance picture");
-    StbPixels<float> pixels(stbi_loadf_from_memory(data, size, &w, &h, &channels, 4),
+    StbPixels<float> pixels(stbi_loadf_from_memory(data, size, &w, &h, &channels, read),
                             stbi_image_free);
-    return from_stb(path, std::move(pixels), w, h, 1);
+    return from_stb(path, std::move(pixels), w, h, read, 1);
   }
   if (bytes.compare(0, 4, "\x89PNG") != 0)
     throw FileError(path, "not a PNG picture");
   if (stbi_is_16_bit_from_memory(data, size)) {
-    StbPixels<stbi_us> pixels(stbi_load_16_from_memory(data, size, &w, &h, &channels, 4),
+    StbPixels<stbi_us> pixels(stbi_load_16_from_memory(data, size, &w, &h, &channels, read),
                               stbi_image_free);
-    return from_stb(path, std::move(pixels), w, h, 65535);
+    return from_stb(path, std::move(pixels), w, h, read, 65535);
   }
-  StbPixels<stbi_uc> pixels(stbi_load_from_memory(data, size, &w, &h, &channels, 4),
+  StbPixels<stbi_uc> pixels(stbi_load_from_memory(data, size, &w, &h, &channels, read),
                             stbi_image_free);
-  return from_stb(path, std::move(pixels), w, h, 255);
+  return from_stb(path, std::move(pixels), w, h, read, 255);
 }
 
 }  // namespace

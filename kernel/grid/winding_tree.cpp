@@ -270,6 +270,12 @@ std::vector<OrderedTriangle> ordered(const GeometrySpans& geometry,
   each_visible_run(geometry, [&](std::uint32_t first, std::uint32_t end) {
     for (std::uint32_t i = first; i < end; ++i) {
       const Triangle::Fields<float> t = triangles[i];
+      float differences = 0;  // 0, or a NaN
+      for (const auto& corner : t.corner)
+        for (const float x : corner)
+          differences += x - x;
+      if (differences != 0)
+        continue;  // grids leave it out as well
       OrderedTriangle& one = placed.emplace_back();
       one.id = i;
       for (int a = 0; a < 3; ++a) {

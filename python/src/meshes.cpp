@@ -49,7 +49,8 @@ ModelParts joined_parts(py::handle vertices, py::handle faces, py::handle given)
 }
 
 SharedModel mesh_moved(const Model& before, py::handle mesh, py::handle vertices, int threads) {
-  const MeshRange range = mesh_range(before.scene(), mesh_in(mesh, before, "update_mesh"));
+  const std::size_t number = mesh_in(mesh, before, "update_mesh");
+  const MeshRange range = mesh_range(before.scene(), number);
   const Triples points = vertices_in(vertices);
   if (points.count() != range.vertex_count)
     wrong_value("vertices",
@@ -57,14 +58,13 @@ SharedModel mesh_moved(const Model& before, py::handle mesh, py::handle vertices
                 text_of(points.full_shape()));
   parts_of(points, faces_of(before.geometry().triangles, range));  // to refuse what is not finite
   ModelParts parts{before.scene(), before.frame.scale, before.in_double};
-  Triangles& t = parts.scene.geometry.triangles;
-  std::size_t at = range.first_vertex;
-  for (const Float3& p : points.in_frame(before.frame)) {
-    t.x[at] = p.x;
-    t.y[at] = p.y;
-    t.z[at++] = p.z;
-  }
-  return built(std::move(parts), threads, &before, {&range.triangles, 1});
+  const std::vector<Float3> own = points.in_frame(before.frame);  // may be too large there
+  const Object moved = move_mesh(
+      parts.scene,
+      number,
+      PointArray(
+          reinterpret_cast<const float*>(own.data()), sizeof(Float3), own.size(), "vertices"));
+  return built(std::move(parts), threads, &before, {&moved, 1});
 }
 
 SharedModel mesh_shown(const Model& before, py::handle mesh, bool visible, int threads) {

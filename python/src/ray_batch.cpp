@@ -1,5 +1,6 @@
 #include "src/ray_batch.hpp"
 
+#include <algorithm>
 #include <limits>
 
 namespace grelha::python {
@@ -34,7 +35,9 @@ RayBatch::RayBatch(const Model& model, const RayArguments& given)
   if (given.masks.is_none())
     return;
   const auto masks = py::reinterpret_borrow<py::array>(given.masks);  // the caller holds it
-  masks_ = {static_cast<const std::uint8_t*>(masks.data()), std::size_t(masks.size())};
+  // add_mesh() in another thread makes masks longer before primitives
+  masks_ = {static_cast<const std::uint8_t*>(masks.data()),
+            std::min(std::size_t(masks.size()), std::size_t(model.primitives()))};
 }
 
 void RayBatch::share_shape(const Wholes& skip, const Wholes& mask) {

@@ -1,6 +1,8 @@
 """Several meshes in one World: whose hits they are, and updates of one."""
 import copy
+import pathlib
 import pickle
+import tempfile
 import types
 import unittest
 
@@ -90,6 +92,19 @@ class Meshes(unittest.TestCase):
         self.assertEqual((balls.meshes, balls.mesh_of(3)), (1, (-1, -1)))
         with self.assertRaisesRegex(ValueError, "update_mesh: expected a World of triangles alone"):
             balls.update_mesh(0, CUBE)
+
+    def test_updates_beyond_the_range_of_a_file_are_refused(self):
+        rows = "\n".join(" ".join(repr(float(x)) for x in row) for row in CUBE * 1e-25)
+        faces = "\n".join("3 " + " ".join(map(str, face)) for face in CUBE_FACES)
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "tiny.ply")
+            path.write_text("ply\nformat ascii 1.0\nelement vertex 8\nproperty double x\n"
+                            "property double y\nproperty double z\nelement face 12\n"
+                            f"property list uchar int vertex_indices\nend_header\n{rows}\n{faces}\n")
+            world = grelha.read(path).world
+        with self.assertRaisesRegex(ValueError, "vertices"):
+            world.update_mesh(0, CUBE * 1e18)
+        self.assertTrue(np.isfinite(world.vertices).all())
 
     def test_update_of_one_is_a_new_world_bit_for_bit(self):
         meshes, world = scene(), grelha.World.of(scene())

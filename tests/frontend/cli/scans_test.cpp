@@ -89,6 +89,10 @@ TEST_F(Scans, TransparentPicturesAreThoseOfTheirViews) {
   const Outcome away = run(render + "--eye 9,9,9 --at 10,10,10 --strict -o away.png");
   EXPECT_EQ(away.status, 2);
   EXPECT_NE(away.err.find("shows the background alone"), std::string::npos) << away.err;
+  folder_.write("black.nff",
+                "v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 40\nhither 1\n"
+                "resolution 8 8\nb 1 1 1\nl 5 5 5\nf 0 0 0 0 0 0 0 0\ns 0 0 0 1\n");
+  expect_fine("render black.nff --transparent --strict -o black.png");
 }
 
 TEST_F(Scans, TurntablesThatCannotBe) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <limits>
 
 #include "grelha/distance.hpp"
 #include "grelha/inside.hpp"
@@ -33,6 +34,22 @@ TEST(AngleOf, IsThatOfLongDouble) {
   EXPECT_EQ(scalar::angle_of<double>(0, 0), 0);
   EXPECT_EQ(scalar::angle_of<double>(2, 0), 0);
   EXPECT_EQ(scalar::angle_of<double>(0, -1), -scalar::angle_of<double>(0, 1));
+}
+
+TEST(WindingNumber, LeavesOutTrianglesThatAreNotFinite) {
+  for (const float wrong : {std::numeric_limits<float>::quiet_NaN(), 1e30f * 1e30f}) {
+    const Scene whole = closed_meshes().front();
+    Scene s = whole;
+    add_triangle(s, {wrong, 0, 0}, {1, 0, 0}, {0, 1, 0});
+    const World world(s, {}), expected(whole, {});
+    Random random(3);
+    for (int i = 0; i < 40; ++i) {
+      const Float3 point = 2.f * random.unit() * random.direction();
+      EXPECT_NEAR(grelha::winding_number(world, point, 1e-6),
+                  grelha::winding_number(expected, point, 1e-6),
+                  2e-6);
+    }
+  }
 }
 
 /// A small triangle at the end of a stick that turns its face along it: what is left out is as
