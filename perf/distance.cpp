@@ -36,13 +36,14 @@ namespace {
 using namespace grelha;
 using namespace grelha::perf;
 
-constexpr double kFewerInMiddle = 64;  ///< times fewer points there: each takes long
-constexpr double kAllowed = 1e-5;      ///< difference of distances, of these and of coordinates
+constexpr std::size_t kManyTriangles = 1'000'000;  ///< then an eighth of the points
+constexpr double kFewerInMiddle = 64;              ///< times fewer points there: each takes long
+constexpr double kAllowed = 1e-5;  ///< difference of distances, of these and of coordinates
 constexpr const char* kNames[] = {"array", "call", "Embree", "CGAL"};
 
 struct Options {
-  std::size_t points = 20000;
-  int rounds = 7;
+  std::size_t points = 10000;
+  int rounds = 5;
   std::vector<std::string> scenes;
 };
 
@@ -237,7 +238,8 @@ bool table(const std::string& name, const Options& o) {
   const auto cgal = make_cgal_tree(t);
   const std::string shown = std::filesystem::path(name).stem();
   bool right = true;
-  for (PointSet& set : point_sets(t, o.points)) {
+  const std::size_t fewer = t.size() > kManyTriangles ? 8 : 1;
+  for (PointSet& set : point_sets(t, std::max<std::size_t>(1, o.points / fewer))) {
     right &= row(shown, set, methods_of(world, embree.get(), cgal.get()), o.rounds);
     std::shuffle(set.points.begin(), set.points.end(), std::mt19937(1));
     set.name += ", shuffled";
