@@ -85,7 +85,8 @@ rm -rf arm
 grelha/tests/arm.sh /tmp/arm libgomp1 libopenexr-3-1-30 zlib1g python3 python3-numpy
 for deb in *_arm64.deb grelha-doc_*_all.deb; do dpkg-deb -x "$deb" arm; done
 dpkg-deb -f python3-grelha_*_arm64.deb Depends
-emulated="qemu-aarch64 -L /tmp/arm"
+libraries=/tmp/arm/usr/lib/aarch64-linux-gnu  # the alternatives of libblas are not set up there
+emulated="qemu-aarch64 -L /tmp/arm -E LD_LIBRARY_PATH=$libraries/blas:$libraries/lapack"
 $emulated arm/usr/bin/grelha render arm/usr/share/grelha/scenes/balls.nff -o arm.png --size 160x120
 sed -n '/^```python$/,/^```$/{/^```/!p}' arm/usr/share/doc/grelha/README.md |
   sed 's/1_000_000/1_000/; s/512, 512/64, 64/' >readme.py
