@@ -19,9 +19,9 @@ import subprocess
 import sys
 
 FOLDERS = ("include", "kernel", "frontend", "c", "scenes", "tests", "perf", "examples", "cmake",
-           "docs")
+           "docs", "python")
 CPP = (".hpp", ".cpp", ".h", ".c")
-SOURCES = (*CPP, ".py", ".sh", ".cmake", ".in")
+SOURCES = (*CPP, ".py", ".pyi", ".sh", ".cmake", ".in")
 NAMES = ("CMakeLists.txt", "run")
 WIDTH, FILE_LINES, FUNCTION_LINES, BRANCHES = 100, 400, 60, 15
 CLANG_FORMAT = "14"  # each version has its own taste

@@ -21,6 +21,11 @@ add_test(NAME figures COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/with_python.sh
   ${PROJECT_SOURCE_DIR}/perf/figures.py --check)
 set_tests_properties(figures PROPERTIES LABELS build SKIP_RETURN_CODE 77)
 
+# Each fault of plant.py can be planted.
+add_test(NAME faults COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/with_python.sh
+  ${CMAKE_CURRENT_LIST_DIR}/plant.py --list)
+set_tests_properties(faults PROPERTIES LABELS build SKIP_RETURN_CODE 77)
+
 add_test(NAME summary COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/with_python.sh
   ${CMAKE_CURRENT_LIST_DIR}/summary.py --self-test)
 set_tests_properties(summary PROPERTIES LABELS build SKIP_RETURN_CODE 77)

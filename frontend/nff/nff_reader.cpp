@@ -305,7 +305,7 @@ void NffReader::read_ply(std::string_view keyword) {
 
 /// Spotlights and light from one direction.
 void NffReader::read_beam(std::string_view keyword) {
-  input_.numbers(0, "the light");
+  words_.tail_of_line();
   input_.warn_once(
       keyword, keyword, "lights of " + quoted(keyword) + " are left out: they shine one way");
 }

@@ -20,8 +20,8 @@ class Scene:
              write_image(path, image, srgb=True).
     smooth   degrees, up to 180: vertices get normals, but for edges that turn by more, where
              `vertices` has them twice
-    material a dict of what differs from light grey: diffuse, specular, mirror and emission (a number
-             or (3,)), shine, transmission, ior, roughness
+    material a dict of what differs from light grey: diffuse, specular, mirror and emission (a
+             number or (3,)), shine, transmission, ior, roughness
     """
 
     __slots__ = ("_core", "__weakref__")

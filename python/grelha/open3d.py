@@ -2,10 +2,10 @@
 
     from grelha.open3d import RaycastingScene
 
-Arguments may be arrays, lists, or tensors with .numpy(). Answers are numpy arrays that are read like
-tensors too: they and their elements have .numpy(), .cpu(), .isfinite() and so on. Rays and points
-may be float64. Answers do not depend on the number of threads. Inside and outside are exact:
-`nsamples` is read and not needed.
+Arguments may be arrays, lists, or tensors with .numpy(). Answers are numpy arrays that are read
+like tensors too: they and their elements have .numpy(), .cpu(), .isfinite() and so on. Rays and
+points may be float64. Answers do not depend on the number of threads. Inside and outside are
+exact: `nsamples` is read and not needed.
 """
 import numpy as np
 

@@ -276,35 +276,47 @@ void write_encoded(const std::string& name, Picture picture) {
   write_file(name, work->second);
 }
 
-}  // namespace
-
-void write_picture(py::handle path, py::handle given, bool srgb) {
-  const std::string name = path_in(path);
-  if (!image_format(name))
-    wrong_value("path", "a name that ends with .png, .hdr, .pfm or .exr", '"' + name + '"');
-  const py::array array = numbers_in(given, "image", "(h, w), (h, w, 3) or (h, w, 4)");
-  const Shape shape = shape_of(array);
-  const auto channels = std::size_t(shape.size() == 3 ? shape[2] : shape.size() == 2 ? 1 : 0);
-  if (channels != 3 && channels != 4 && shape.size() != 2)
+/// Channels of an array (h, w), (h, w, 3) or (h, w, 4). Throws ValueError for other shapes.
+std::size_t channels_of(const Shape& shape) {
+  const auto channels = std::size_t(shape.size() == 3 ? shape[2] : 1);
+  if (shape.size() != 2 && !(shape.size() == 3 && (channels == 3 || channels == 4)))
     wrong_value("image", "shape (h, w), (h, w, 3) or (h, w, 4)", text_of(shape));
   for (const std::size_t side : {0, 1})
     if (shape[side] < 1 || shape[side] > kMostSide)
       wrong_value("image", "sides of 1 to " + std::to_string(kMostSide), text_of(shape));
-  Picture p{Image(int(shape[1]), int(shape[0])), *image_format(name), {}, {}};
-  if (srgb && p.format != ImageFormat::png)
+  return channels;
+}
+
+/// Fills in pixels, rows of 1, 3 or 4 channels.
+void put_pixels(const float* from, std::size_t channels, Picture& picture) {
+  std::vector<float>& rgb = picture.image.rgb;
+  for (std::size_t i = 0; i < rgb.size(); ++i)
+    rgb[i] = from[channels == 1 ? i / 3 : i / 3 * channels + i % 3];
+  for (std::size_t i = 0; channels == 4 && i < rgb.size() / 3; ++i)
+    picture.alpha.push_back(from[4 * i + 3]);
+}
+
+}  // namespace
+
+void write_picture(py::handle path, py::handle given, bool srgb) {
+  const std::string name = path_in(path);
+  const std::optional<ImageFormat> format = image_format(name);
+  if (!format)
+    wrong_value("path", "a name that ends with .png, .hdr, .pfm or .exr", '"' + name + '"');
+  const py::array array = numbers_in(given, "image", "(h, w), (h, w, 3) or (h, w, 4)");
+  const Shape shape = shape_of(array);
+  const std::size_t channels = channels_of(shape);
+  if (srgb && *format != ImageFormat::png)
     wrong_value("srgb", "a .png, other pictures hold light as it is", '"' + name + '"');
-  if (channels == 4 && p.format != ImageFormat::png && p.format != ImageFormat::exr)
+  if (channels == 4 && *format != ImageFormat::png && *format != ImageFormat::exr)
     wrong_value("image", "three channels for .hdr and .pfm, which hold no alpha", text_of(shape));
-  if (!image_fits(p.format, p.image.width, p.image.height, channels == 4 ? 4 : 3))
+  Picture picture{
+      Image(int(shape[1]), int(shape[0])), *format, srgb ? Tone::srgb : Tone::authored, {}};
+  if (!image_fits(*format, picture.image.width, picture.image.height, channels == 4 ? 4 : 3))
     wrong_value("image", "a picture that this format holds", text_of(shape));
-  p.tone = srgb ? Tone::srgb : Tone::authored;
   const auto floats = py::array_t<float, py::array::c_style | py::array::forcecast>(array);
-  const float* const from = floats.data();
-  for (std::size_t i = 0; i < p.image.rgb.size(); ++i)
-    p.image.rgb[i] = from[channels == 1 ? i / 3 : i / 3 * channels + i % 3];
-  for (std::size_t i = 0; channels == 4 && i < p.image.rgb.size() / 3; ++i)
-    p.alpha.push_back(from[4 * i + 3]);
-  write_encoded(name, std::move(p));
+  put_pixels(floats.data(), channels, picture);
+  write_encoded(name, std::move(picture));
 }
 
 }  // namespace grelha::python

@@ -62,7 +62,8 @@ class FileScene {
   int samples_ = 1;
 };
 
-/// Writes an array of shape (h, w), (h, w, 3) or (h, w, 4) as a picture; `srgb`: a PNG through that curve.
+/// Writes an array of shape (h, w), (h, w, 3) or (h, w, 4) as a picture; `srgb`: a PNG through that
+/// curve.
 void write_picture(py::handle path, py::handle image, bool srgb);
 
 }  // namespace grelha::python

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "frontend/ply/ply_faces.hpp"
 #include "frontend/scene/scene_builder.hpp"
@@ -68,6 +69,21 @@ float at_least_0(py::handle given, const std::string& name) {
   return float(number);
 }
 
+/// A field of a material by its name, or null; diffuse is none of them.
+Float3* color_named(Material& m, std::string_view field) {
+  return field == "specular"   ? &m.specular
+         : field == "mirror"   ? &m.mirror
+         : field == "emission" ? &m.emission
+                               : nullptr;
+}
+float* number_named(Material& m, std::string_view field) {
+  return field == "shine"          ? &m.shine
+         : field == "transmission" ? &m.transmission
+         : field == "ior"          ? &m.ior
+         : field == "roughness"    ? &m.roughness
+                                   : nullptr;
+}
+
 }  // namespace
 
 double smoothness_in(py::handle given) {
@@ -100,15 +116,8 @@ void put_material(py::handle given, std::vector<Material>& materials) {
   Material m = materials.at(0);
   for (const auto& [key, value] : py::reinterpret_borrow<py::dict>(given)) {
     const std::string field = py::str(key), name = "material[" + field + ']';
-    Float3* const color = field == "specular"   ? &m.specular
-                          : field == "mirror"   ? &m.mirror
-                          : field == "emission" ? &m.emission
-                                                : nullptr;
-    float* const number = field == "shine"          ? &m.shine
-                          : field == "transmission" ? &m.transmission
-                          : field == "ior"          ? &m.ior
-                          : field == "roughness"    ? &m.roughness
-                                                    : nullptr;
+    Float3* const color = color_named(m, field);
+    float* const number = number_named(m, field);
     glows |= field == "emission";
     if (field == "diffuse")
       diffuse = color_in(value, name);

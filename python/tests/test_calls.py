@@ -24,7 +24,8 @@ class Broadcasting(unittest.TestCase):
         t_min, t_max = rng.uniform(0, 0.3, shapes[2]), rng.uniform(0.3, 9, shapes[3])
         skip = rng.integers(-1, 100, shapes[4])
         shape = np.broadcast_shapes(*shapes)
-        full = [np.broadcast_to(a, (*shape, 3)).reshape(-1, 3).copy() for a in (origins, directions)]
+        full = [np.broadcast_to(a, (*shape, 3)).reshape(-1, 3).copy()
+                for a in (origins, directions)]
         full += [np.broadcast_to(a, shape).ravel() for a in (t_min, t_max, skip)]
         for name in ("closest", "occluded", "count_hits"):
             found = getattr(self.world, name)(origins, directions, t_min, t_max, skip)

@@ -61,8 +61,9 @@ class Rules(unittest.TestCase):
         world = grelha.World(self.vertices, open_faces)
         for ask in (world.contains, world.signed_distance):
             for rule in ({}, {"inside": "closed"}, {"inside": "nonzero"}):
-                with self.assertRaisesRegex(ValueError, "inside: expected a closed mesh, found [0-9]+ "
-                                            "open edges, the first from vertex .*\"winding\""):
+                with self.assertRaisesRegex(ValueError, "inside: expected a closed mesh, found "
+                                            "[0-9]+ open edges, the first from vertex "
+                                            ".*\"winding\""):
                     ask(self.points, **rule)
         inside = world.contains(self.points, inside="winding")
         number = world.winding_number(self.points, 1e-6)

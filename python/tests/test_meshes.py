@@ -100,7 +100,8 @@ class Meshes(unittest.TestCase):
             path = pathlib.Path(folder, "tiny.ply")
             path.write_text("ply\nformat ascii 1.0\nelement vertex 8\nproperty double x\n"
                             "property double y\nproperty double z\nelement face 12\n"
-                            f"property list uchar int vertex_indices\nend_header\n{rows}\n{faces}\n")
+                            "property list uchar int vertex_indices\nend_header\n"
+                            f"{rows}\n{faces}\n")
             world = grelha.read(path).world
         with self.assertRaisesRegex(ValueError, "vertices"):
             world.update_mesh(0, CUBE * 1e18)
@@ -259,7 +260,8 @@ class Meshes(unittest.TestCase):
 
     def test_broken_states_raise(self):
         restored, (cls, state, masks) = grelha.World.of(scene()).__reduce__()
-        for firsts in ([0, 1], [1, *state[-1][1:]], state[-1][:-1], state[-1] // 2, state[-1][::-1]):
+        for firsts in ([0, 1], [1, *state[-1][1:]], state[-1][:-1], state[-1] // 2,
+                       state[-1][::-1]):
             with self.assertRaisesRegex(ValueError, "state: expected vertices of each mesh"):
                 restored(cls, (*state[:-1], np.uint32(firsts)), masks)
 
