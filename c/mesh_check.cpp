@@ -29,6 +29,7 @@ grelha_status grelha_check_mesh(const grelha_world* world, grelha_mesh_check* fo
               .inconsistent = edges_of(mesh.inconsistent_edges),
               .nonmanifold = edges_of(mesh.nonmanifold_edges),
               .duplicate = ids_of(mesh.duplicate_triangles),
-              .degenerate = ids_of(mesh.degenerate_triangles)};
+              .degenerate = ids_of(mesh.degenerate_triangles),
+              .nonfinite = ids_of(mesh.nonfinite_triangles)};
   });
 }

@@ -181,10 +181,11 @@ typedef struct grelha_ids {
 } grelha_ids;
 
 /// Properties of a world's triangles as a mesh. Vertices at one place are one vertex, whatever
-/// their indices; triangles with two corners at one place have no edges.
+/// their indices; triangles with two corners at one place have no edges. Triangles that are not
+/// finite are left out, as queries do.
 typedef struct grelha_mesh_check {
-  size_t triangles;
-  size_t vertices;  ///< places of corners
+  size_t triangles;  ///< finite ones
+  size_t vertices;   ///< places of corners
   size_t edges;
   grelha_edges open;  ///< of an odd number of triangles; none: the mesh is closed
   /// of an even number of triangles that do not go each way by halves; none: the mesh is oriented
@@ -192,6 +193,7 @@ typedef struct grelha_mesh_check {
   grelha_edges nonmanifold;  ///< of more than two triangles
   grelha_ids duplicate;      ///< with the corners of one before, in any order
   grelha_ids degenerate;     ///< without area, exactly
+  grelha_ids nonfinite;      ///< with a NaN or an infinity
 } grelha_mesh_check;
 
 /// Checks the visible triangles of a world. Exact; takes time in proportion to their number once,

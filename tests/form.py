@@ -2,7 +2,7 @@
 """Every source has the form that CONTRIBUTING.md asks for.
 
     form.py text ROOT        lines of at most 100 columns, one assignment a statement, files of at
-                             most 400 lines
+                             most 700 lines
     form.py functions ROOT   functions of at most 60 lines and 15 branches; needs universal-ctags
     form.py format ROOT      what clang-format 14 makes of .clang-format
     form.py --self-test FOLDER   plants an offence against each rule there, and wants it found
@@ -23,7 +23,7 @@ FOLDERS = ("include", "kernel", "frontend", "c", "scenes", "tests", "perf", "exa
 CPP = (".hpp", ".cpp", ".h", ".c")
 SOURCES = (*CPP, ".py", ".pyi", ".sh", ".cmake", ".in")
 NAMES = ("CMakeLists.txt", "run")
-WIDTH, FILE_LINES, FUNCTION_LINES, BRANCHES = 100, 400, 60, 15
+WIDTH, FILE_LINES, FUNCTION_LINES, BRANCHES = 100, 700, 60, 15
 CLANG_FORMAT = "14"  # each version has its own taste
 
 # Violations that main still contains. An exception that is no longer needed is an offence.

@@ -55,6 +55,7 @@ std::string mesh_text(const SceneFile& file) {
   add(mesh.nonmanifold_edges.count, "non-manifold edge");
   add(mesh.duplicate_triangles.count, "duplicate triangle");
   add(mesh.degenerate_triangles.count, "degenerate triangle");
+  add(mesh.nonfinite_triangles.count, "non-finite triangle");
   return text + (mesh.is_edge_manifold() ? "; edge-manifold\n" : "\n") +
          (others.empty() ? "" : "              " + others + '\n');
 }
@@ -70,7 +71,8 @@ Json mesh_json(const SceneFile& file) {
           {"inconsistent_edges", to_json(mesh.inconsistent_edges)},
           {"nonmanifold_edges", to_json(mesh.nonmanifold_edges)},
           {"duplicate_triangles", to_json(mesh.duplicate_triangles)},
-          {"degenerate_triangles", to_json(mesh.degenerate_triangles)}};
+          {"degenerate_triangles", to_json(mesh.degenerate_triangles)},
+          {"nonfinite_triangles", to_json(mesh.nonfinite_triangles)}};
 }
 
 }  // namespace grelha

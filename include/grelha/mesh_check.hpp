@@ -25,10 +25,11 @@ struct Findings {
 };
 
 /// The results of check_mesh(). Vertices at one place are one vertex, whatever their indices;
-/// triangles with two corners at one place have no edges.
+/// triangles with two corners at one place have no edges. Triangles that are not finite are left
+/// out, as queries do.
 struct MeshCheck {
-  std::size_t triangles = 0;
-  std::size_t vertices = 0;  ///< places of corners
+  std::size_t triangles = 0;  ///< finite ones
+  std::size_t vertices = 0;   ///< places of corners
   std::size_t edges = 0;
   Findings<MeshEdge> open_edges;  ///< of an odd number of triangles
   /// of an even number of triangles that do not go each way by halves
@@ -36,6 +37,7 @@ struct MeshCheck {
   Findings<MeshEdge> nonmanifold_edges;          ///< of more than two triangles
   Findings<std::uint32_t> duplicate_triangles;   ///< with the corners of one before, in any order
   Findings<std::uint32_t> degenerate_triangles;  ///< without area, exactly
+  Findings<std::uint32_t> nonfinite_triangles;   ///< with a NaN or an infinity
 
   /// No edge is open: inside is defined by parity.
   bool is_closed() const { return open_edges.count == 0; }
@@ -47,7 +49,8 @@ struct MeshCheck {
 
 /// Checks the triangles of a scene that are visible. Exact; takes time and memory in proportion to
 /// their number. Triangles that cross each other are not looked for. Throws std::invalid_argument
-/// if a triangle names a vertex that is not there, or an object a triangle.
+/// if arrays have unequal lengths, a triangle names a vertex that is not there, or an object a
+/// triangle.
 MeshCheck check_mesh(const SceneSpans& scene);
 /// The same of a World, which checks once and keeps the answer.
 const MeshCheck& check_mesh(const World& world);

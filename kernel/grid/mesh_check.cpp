@@ -13,6 +13,7 @@
 #include "kernel/base/expansion.hpp"
 #include "kernel/grid/world_impl.hpp"
 #include "kernel/scene/visible.hpp"
+#include "kernel/shapes/triangle.hpp"
 
 namespace grelha {
 namespace {
@@ -22,14 +23,12 @@ constexpr std::uint32_t kUnseen = ~std::uint32_t{0};
 /// One vertex for each place.
 class VertexPositions {
  public:
-  explicit VertexPositions(const GeometrySpans& g)
-      : g_(g), t_(g.triangles), of_(t_.vertex_count(), kUnseen) {
+  VertexPositions(const TriangleSpans& t, const std::vector<std::uint32_t>& triangles)
+      : t_(t), of_(t.vertex_count(), kUnseen) {
     std::size_t used = 0;
-    each_corner([&](std::uint32_t vertex) {
-      if (vertex >= of_.size())
-        throw std::invalid_argument("a triangle names a vertex that is not there");
-      used += std::exchange(of_[vertex], vertex) == kUnseen;
-    });
+    for (const std::uint32_t i : triangles)
+      for (const std::uint32_t vertex : {t.a[i], t.b[i], t.c[i]})
+        used += std::exchange(of_[vertex], vertex) == kUnseen;
     table_.assign(std::bit_ceil(2 * used + 1), kUnseen);
     for (std::uint32_t v = 0; v < of_.size(); ++v)
       if (of_[v] != kUnseen)
@@ -41,14 +40,6 @@ class VertexPositions {
   std::size_t count() const { return count_; }
 
  private:
-  template <class Visit>
-  void each_corner(const Visit& visit) const {
-    each_visible_run(g_, [&](std::uint32_t first, std::uint32_t end) {
-      for (const Indices corner : {t_.a, t_.b, t_.c})
-        for (const std::uint32_t vertex : corner.subspan(first, end - first))
-          visit(vertex);
-    });
-  }
   bool is_same(std::uint32_t v, std::uint32_t w) const {
     return t_.x[v] == t_.x[w] && t_.y[v] == t_.y[w] && t_.z[v] == t_.z[w];
   }
@@ -70,7 +61,6 @@ class VertexPositions {
     }
   }
 
-  const GeometrySpans& g_;
   const TriangleSpans& t_;
   std::vector<std::uint32_t> of_;     ///< [vertices] kUnseen: of no triangle
   std::vector<std::uint32_t> table_;  ///< open addressing
@@ -133,11 +123,27 @@ bool is_flat(const float (&corner)[3][3]) {
   return n.x.sign() == 0 && n.y.sign() == 0 && n.z.sign() == 0;
 }
 
+/// Throws std::invalid_argument where arrays of triangles have unequal lengths, or a triangle names
+/// a vertex that is not there.
+void expect_vertices(TriangleSpans t) {
+  if (t.material.empty())
+    t.material = t.a;
+  if (!Triangle::is_even(t))
+    throw std::invalid_argument("arrays of one kind of primitive have unequal lengths");
+  for (const Indices corner : {t.a, t.b, t.c})
+    for (const std::uint32_t vertex : corner)
+      if (vertex >= t.vertex_count())
+        throw std::invalid_argument("a triangle names a vertex that is not there");
+}
+
 class MeshChecker {
  public:
   MeshChecker(const GeometrySpans& g, std::uint32_t first_id)
-      : g_(g), t_(g.triangles), first_id_(first_id), positions_(g) {
-    each_triangle([&](std::uint32_t) { ++found_.triangles; });
+      : t_(g.triangles),
+        first_id_(first_id),
+        checked_(finite_triangles(g)),
+        positions_(t_, checked_) {
+    found_.triangles = checked_.size();
     found_.vertices = positions_.count();
   }
 
@@ -149,6 +155,7 @@ class MeshChecker {
     trim(found_.nonmanifold_edges);
     trim(found_.duplicate_triangles);
     trim(found_.degenerate_triangles);
+    trim(found_.nonfinite_triangles);
     return std::move(found_);
   }
 
@@ -164,7 +171,7 @@ class MeshChecker {
   void check_triangles() {
     std::vector<CornerSet> items;
     items.reserve(found_.triangles);
-    each_triangle([&](std::uint32_t i) {
+    for (const std::uint32_t i : checked_) {
       CornerSet& item =
           items.emplace_back(CornerSet{{place(i, 0), place(i, 1), place(i, 2)}, i, 0});
       std::sort(item.vertex, item.vertex + 3);
@@ -176,7 +183,7 @@ class MeshChecker {
       }
       if (!has_three_positions(i) || is_flat(corner))
         found_.degenerate_triangles.first.push_back(first_id_ + i);
-    });
+    }
     each_same(items, t_.vertex_count(), [&](std::span<const CornerSet> same) {
       for (const CornerSet& item : same.subspan(1))
         found_.duplicate_triangles.first.push_back(first_id_ + item.triangle);
@@ -186,12 +193,11 @@ class MeshChecker {
   void check_edges() {
     std::vector<CornerSet> items;
     items.reserve(3 * found_.triangles);
-    each_triangle([&](std::uint32_t i) {
+    for (const std::uint32_t i : checked_)
       for (std::uint32_t k = 0; has_three_positions(i) && k < 3; ++k) {
         const auto [low, high] = std::minmax({place(i, k), place(i, (k + 1) % 3)});
         items.push_back({{low, high, 0}, i, k});
       }
-    });
     each_same(items, t_.vertex_count(), [&](std::span<const CornerSet> same) { check_edge(same); });
   }
   void check_edge(std::span<const CornerSet> same) {
@@ -230,25 +236,35 @@ class MeshChecker {
     all.shrink_to_fit();
   }
 
-  template <class Visit>
-  void each_triangle(const Visit& visit) const {
-    each_visible_run(g_, [&](std::uint32_t first, std::uint32_t end) {
-      for (std::uint32_t i = first; i < end; ++i)
-        visit(i);
+  /// Those that are visible. Queries leave out the others as well.
+  std::vector<std::uint32_t> finite_triangles(const GeometrySpans& g) {
+    std::vector<std::uint32_t> finite;
+    each_visible_run(g, [&](std::uint32_t first, std::uint32_t end) {
+      for (std::uint32_t i = first; i < end; ++i) {
+        float differences = 0;  // 0, or a NaN
+        for (const std::uint32_t v : {t_.a[i], t_.b[i], t_.c[i]})
+          differences += (t_.x[v] - t_.x[v]) + (t_.y[v] - t_.y[v]) + (t_.z[v] - t_.z[v]);
+        if (differences == 0)
+          finite.push_back(i);
+        else
+          found_.nonfinite_triangles.first.push_back(first_id_ + i);
+      }
     });
+    return finite;
   }
 
-  const GeometrySpans& g_;
   const TriangleSpans& t_;
   const std::uint32_t first_id_;
-  const VertexPositions positions_;
   MeshCheck found_;
+  const std::vector<std::uint32_t> checked_;  ///< triangles
+  const VertexPositions positions_;
 };
 
 }  // namespace
 
 MeshCheck check_mesh(const SceneSpans& scene) {
   const GeometrySpans& g = scene.geometry;
+  expect_vertices(g.triangles);
   expect_objects(g);
   const std::size_t first_id = g.planes.size() + g.spheres.size();
   return MeshChecker(g, static_cast<std::uint32_t>(first_id)).check();

@@ -212,11 +212,7 @@ struct Cluster {
     row.radius[at] = radius;
     row.area[at] = area * kRoundedUp;
     row.spread[at] = (spread + radius * radius * area * kLost) * kRoundedUp;
-    double squares = 0;
-    for (int m = 0; m < 15; ++m)
-      squares += kFourthTimes[m] * fourth[m] * fourth[m];
-    row.fourth[at] =
-        (kOfFourth * std::sqrt(squares) + radius * row.spread[at] * kLost) * kRoundedUp;
+    row.fourth[at] = (kOfFourth * fourth_length() + radius * row.spread[at] * kLost) * kRoundedUp;
     for (int a = 0; a < 3; ++a) {
       row.center[a][at] = center[a];
       row.normal[a][at] = normal[a];
@@ -254,6 +250,18 @@ struct Cluster {
               7 -
           sum * (same(i, j) * same(k, l) + same(i, k) * same(j, l) + same(i, l) * same(j, k)) / 35;
     }
+  }
+  /// The root of the sum of all 81 squared components, whose squares may underflow or overflow.
+  double fourth_length() const {
+    double largest = 0;
+    for (const double x : fourth)
+      largest = std::max(largest, std::abs(x));
+    if (!(largest > 0))
+      return 0;
+    double squares = 0;
+    for (int m = 0; m < 15; ++m)
+      squares += kFourthTimes[m] * (fourth[m] / largest) * (fourth[m] / largest);
+    return largest * std::sqrt(squares);
   }
   void reach(double distance) { radius = std::max(radius, distance * kRoundedUp); }
 };

@@ -14,6 +14,9 @@ namespace {
 
 /// t of spheres and cones that agree to this part of themselves are equal.
 constexpr double kEqualWide = 0x1p-90;
+/// Times the product of the distances to three corners: bound of the error of the volume between
+/// them and a point.
+constexpr double kWideVolumeError = 0x1p-94;
 
 int sign_of(const DoubleDouble& x) {
   return x.high < 0 ? -1 : x.high > 0 ? 1 : 0;
@@ -292,9 +295,22 @@ void crossing_weights(const ExactRay& ray, const float (&corner)[3][3], double (
   share(edge, sum.estimate(), weight);
 }
 
-double volume_between(const double (&point)[3], const float (&corner)[3][3]) {
-  const auto way = [&](int k) { return difference(corner[k], point); };
-  return dot(cross(way(0), way(1)), way(2)).estimate();
+SolidAngleParts solid_angle_parts(const double (&point)[3], const float (&corner)[3][3]) {
+  WideVector to[3];
+  DoubleDouble length[3];
+  for (int k = 0; k < 3; ++k) {
+    const auto along = [&](int a) { return DoubleDouble(corner[k][a]) - point[a]; };
+    to[k] = {along(0), along(1), along(2)};
+    length[k] = square_root(dot(to[k], to[k]));
+  }
+  const DoubleDouble lengths = length[0] * length[1] * length[2];
+  const DoubleDouble real = lengths + dot(to[0], to[1]) * length[2] +
+                            dot(to[1], to[2]) * length[0] + dot(to[2], to[0]) * length[1];
+  const DoubleDouble volume = dot(cross(to[0], to[1]), to[2]);
+  if (magnitude(volume) > lengths * kWideVolumeError)
+    return {real.high, volume.high};
+  const auto exact = [&](int k) { return difference(corner[k], point); };
+  return {real.high, dot(cross(exact(0), exact(1)), exact(2)).estimate()};
 }
 
 bool is_within(const double (&point)[3], const float (&center)[3], float radius) {

@@ -76,9 +76,14 @@ ExactCrossing cross_plane_of(const ExactRay& ray, const float (&corner)[3][3]);
 /// True if a ray that crosses a triangle comes from the side from which its corners are
 /// counter-clockwise.
 bool crosses_front(const ExactRay& ray, const float (&corner)[3][3]);
-/// Six times the volume between a point and a triangle, within 2^-52 of itself: positive where its
-/// corners are clockwise as seen from the point.
-double volume_between(const double (&point)[3], const float (&corner)[3][3]);
+/// A complex number whose angle is half the solid angle of a triangle, as solid_angle.hpp has it.
+struct SolidAngleParts {
+  double real;
+  double volume;  ///< the imaginary part: its sign is exact
+};
+/// In numbers of 106 bits: within 2^-94 of the product of the distances to the corners, and
+/// rounded.
+SolidAngleParts solid_angle_parts(const double (&point)[3], const float (&corner)[3][3]);
 /// True if a point lies within a distance of another: exact.
 bool is_within(const double (&point)[3], const float (&center)[3], float radius);
 /// From either side. Rays along a plane do not cross.

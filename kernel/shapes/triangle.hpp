@@ -178,6 +178,10 @@ inline constexpr double kEdgeError = 32;
 /// a quarter of whose sum may be wrong, and 36 u by the mean.
 inline constexpr double kDepthError = 256;
 inline constexpr double kDepthRounding = 16;
+/// Added to the range: more than underflow takes from the corners' t and their weighted sum.
+template <class Real>
+inline constexpr double kRangeUnderflow =
+    std::is_same_v<Scalar<Real>, float> ? 0x1p-126 : 0x1p-1000;
 
 /// Edge functions of triangles and rays, and their error bounds.
 template <class Real>
@@ -230,7 +234,8 @@ template <class Real>
   const Real inverse = Real(1) / ((u + v) + w);
   const Real ta = shear.z * oa.z, tb = shear.z * ob.z, tc = shear.z * oc.z;
   const Real t = ((u * inverse) * ta + (v * inverse) * tb) + (w * inverse) * tc;
-  const Real range = max(max(ta, tb), tc) - min(min(ta, tb), tc);
+  const Real range = (max(max(ta, tb), tc) - min(min(ta, tb), tc)) +
+                     Real(static_cast<Scalar<Real>>(kRangeUnderflow<Real>));
   const Real spread = (area * magnitude(inverse)) * range;
   const Real size = magnitude(t) + wide * magnitude(shear.z);
   const Real slack = units<Real>(kDepthError) * spread + units<Real>(kDepthRounding) * size;

@@ -59,6 +59,7 @@ class MeshCheck(NamedTuple):
     nonmanifold_edges: Findings
     duplicate_triangles: Findings
     degenerate_triangles: Findings
+    nonfinite_triangles: Findings
     @property
     def closed(self) -> bool: ...
     @property

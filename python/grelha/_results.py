@@ -41,7 +41,7 @@ class Findings(NamedTuple):
 
 class MeshCheck(NamedTuple):
     """What a mesh is. Vertices at one place are one vertex, whatever their indices."""
-    triangles: int
+    triangles: int  # finite ones
     vertices: int  # places of corners
     edges: int
     open_edges: Findings  # of an odd number of triangles
@@ -49,6 +49,7 @@ class MeshCheck(NamedTuple):
     nonmanifold_edges: Findings  # of more than two triangles
     duplicate_triangles: Findings  # with the corners of one before, in any order
     degenerate_triangles: Findings  # without area, exactly
+    nonfinite_triangles: Findings  # with a NaN or an infinity: left out, as by queries
 
     @property
     def closed(self):

@@ -325,8 +325,9 @@ class World:
         """Whether the faces form closed, oriented, manifold meshes, and where they do not.
 
         Returns MeshCheck(triangles, vertices, edges, open_edges, inconsistent_edges,
-        nonmanifold_edges, duplicate_triangles, degenerate_triangles), with the properties closed,
-        oriented and edge_manifold. The last five members are Findings(count, first):
+        nonmanifold_edges, duplicate_triangles, degenerate_triangles, nonfinite_triangles), with the
+        properties closed, oriented and edge_manifold. The last six members are Findings(count,
+        first):
 
         count   how many there are
         first   int64 (k,): the eight lowest faces of that kind. Of edges (k, 3): the first face

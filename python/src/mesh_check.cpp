@@ -35,7 +35,8 @@ py::object checked_mesh(const SharedModel& model) {
                                    found_edges(*model, found.inconsistent_edges),
                                    found_edges(*model, found.nonmanifold_edges),
                                    found_faces(*model, found.duplicate_triangles),
-                                   found_faces(*model, found.degenerate_triangles));
+                                   found_faces(*model, found.degenerate_triangles),
+                                   found_faces(*model, found.nonfinite_triangles));
 }
 
 }  // namespace grelha::python

@@ -273,6 +273,7 @@ inline std::vector<std::pair<const char*, Scene>> agreement_meshes() {
   all.emplace_back("lattice", lattice_patch(8));
   all.emplace_back("sheets", stacked_sheets(300));
   all.emplace_back("slivers", slivers(5, 200));
+  all.emplace_back("cube at 0", cube_at_zero(4));
   return all;
 }
 

@@ -28,6 +28,8 @@ class HardRays {
   }
 
   Ray next() {
+    if (random_.chance(.1))
+      return from_beside_zeros();
     constexpr double kAway[] = {0, .3, .8, 3, 4.2, 20, 1e4, 1e8, 1e13};
     const Float3 target = point_on_mesh();
     const double away = diagonal_ * kAway[random_.below(std::size(kAway))];
@@ -87,6 +89,26 @@ class HardRays {
     }
   }
 
+  /// From a point on the mesh whose zeros are moved by less than normal floats hold, so that t is no
+  /// normal float.
+  Ray from_beside_zeros() {
+    const Float3 target = point_on_mesh();
+    Ray ray;
+    ray.org = target;
+    for (float* x : {&ray.org.x, &ray.org.y, &ray.org.z})
+      if (*x == 0)
+        *x = denormal();
+    ray.dir = random_.chance(.5) ? axis_or_diagonal() : random_.direction();
+    set_length(ray);
+    if (random_.chance(.3))
+      set_ends(ray, target);
+    return ray;
+  }
+  float denormal() {
+    const auto steps = static_cast<float>(1 + random_.below(1u << random_.below(9)));
+    return random_.sign() < 0 ? -steps * 0x1p-149f : steps * 0x1p-149f;
+  }
+
   void set_length(Ray& ray) {
     constexpr float kLengths[] = {1, 1, 1, .125f, 0x1p-20f, 1024, 0x1p20f, .37f};
     const float by = kLengths[random_.below(std::size(kLengths))];
@@ -104,7 +126,9 @@ class HardRays {
     const auto t = static_cast<float>(
         (double{way.x} * ray.dir.x + double{way.y} * ray.dir.y + double{way.z} * ray.dir.z) / dd);
     const auto end = [&]() -> float {
-      switch (random_.below(9)) {
+      switch (random_.below(10)) {
+        case 9:
+          return denormal();
         case 0:
           return t;
         case 1:

@@ -18,7 +18,8 @@ inline void add_mesh(
   }
 }
 
-/// Points in and around the box of a unit mesh, far away, on a lattice, and beside vertices.
+/// Points in and around the box of a unit mesh, far away, on a lattice, beside 0, and beside
+/// vertices.
 inline std::vector<Float3> points_around(const Scene& s, std::uint64_t seed, std::size_t count) {
   Random random(seed);
   std::vector<Float3> points;
@@ -34,7 +35,10 @@ inline std::vector<Float3> points_around(const Scene& s, std::uint64_t seed, std
         points.push_back(random.point(i % 16 == 0 ? 1e4 : 1.3));
         break;
       case 1:
-        points.push_back(on_lattice);
+        points.push_back(i % 8 == 1 ? on_lattice
+                                    : Float3{on_lattice.x == 0 ? -0x1p-149f : on_lattice.x,
+                                             on_lattice.y == 0 ? 0x1p-147f : on_lattice.y,
+                                             on_lattice.z == 0 ? -0x1p-146f : on_lattice.z});
         break;
       default:
         points.push_back(at(near, random.log_in(1e-7, .3), random.direction()));
@@ -62,6 +66,14 @@ inline std::vector<Scene> closed_meshes() {
   for (float& y : thin.geometry.triangles.y)
     y *= 1e-5f;
   all.push_back(thin);
+  return all;
+}
+
+/// Closed meshes that have points in their planes: a cube, and a plate whose sides are needles.
+inline std::vector<Scene> flat_sided_meshes() {
+  std::vector<Scene> all = {cube_at_zero(3), cube_at_zero(2)};
+  for (float& z : all[1].geometry.triangles.z)
+    z *= 1e-6f;
   return all;
 }
 

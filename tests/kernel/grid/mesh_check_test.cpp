@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "grelha/inside.hpp"
 #include "tests/support/hard_meshes.hpp"
 #include "tests/support/scenes.hpp"
 
@@ -187,6 +188,58 @@ TEST(MeshCheck, RefusesVerticesThatAreNotThere) {
   Scene s = ball_mesh(8, 4);
   s.geometry.triangles.c[3] = 1000;
   EXPECT_THROW(check_mesh(s), std::invalid_argument);
+}
+
+TEST(MeshCheck, RefusesArraysOfUnequalLengths) {
+  const Scene whole = ball_mesh(8, 4);
+  const auto refuses = [&](auto shorten) {
+    Scene s = whole;
+    shorten(s.geometry.triangles);
+    EXPECT_THROW(check_mesh(s), std::invalid_argument);
+  };
+  refuses([](Triangles& t) { t.b.pop_back(); });
+  refuses([](Triangles& t) { t.c.pop_back(); });
+  refuses([](Triangles& t) { t.y.pop_back(); });
+  refuses([](Triangles& t) { t.z.pop_back(); });
+  refuses([](Triangles& t) { t.nx.assign(3, 0); });
+}
+
+/// A mesh stays closed, as for queries.
+TEST(MeshCheck, LeavesOutTrianglesThatAreNotFinite) {
+  Scene s = ball_mesh(8, 4);
+  const MeshCheck whole = check_mesh(s);
+  const auto n = static_cast<std::uint32_t>(s.geometry.triangles.size());
+  add_triangle(s, {kNaN, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  add_triangle(s, {0, 0, 0}, {1, 0, 0}, {0, -kInf, 0});
+  s.geometry.triangles.a.back() = s.geometry.triangles.a.front();
+  const MeshCheck found = check_mesh(s);
+  EXPECT_TRUE(found.is_closed());
+  EXPECT_EQ(found.triangles, whole.triangles);
+  EXPECT_EQ(found.vertices, whole.vertices);
+  EXPECT_EQ(found.degenerate_triangles.count, 0u);
+  EXPECT_EQ(found.nonfinite_triangles.count, 2u);
+  EXPECT_EQ(found.nonfinite_triangles.first, (std::vector<std::uint32_t>{n, n + 1}));
+  EXPECT_TRUE(contains(World(s, {}), {0, 0, 0}));
+}
+
+TEST(MeshCheck, TakesZerosOfBothSignsForOne) {
+  Scene s = empty_scene();
+  const Float3 corner[4] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const std::uint32_t face[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  const auto signed_zeros = [](Float3 p, float zero) {
+    return Float3{p.x == 0 ? zero : p.x, p.y == 0 ? zero : p.y, p.z == 0 ? zero : p.z};
+  };
+  float zero = 0;
+  for (const auto& v : face) {
+    zero = -zero;
+    add_triangle(s,
+                 signed_zeros(corner[v[0]], zero),
+                 signed_zeros(corner[v[1]], zero),
+                 signed_zeros(corner[v[2]], zero));
+  }
+  const MeshCheck found = check_mesh(s);
+  EXPECT_TRUE(found.is_closed());
+  EXPECT_EQ(found.vertices, 4u);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ TEST(Agreement, EveryQueryAnswersAsRationalNumbersDo) {
   for (const auto& [name, scene] : agreement_meshes()) {
     const bool is_dense = scene.geometry.triangles.a.size() > 4000;
     HardRays rays(scene, ++seed);
-    std::vector<Ray> asked(is_dense ? 20 : 1500);
+    std::vector<Ray> asked(is_dense ? 40 : 1500);
     for (Ray& ray : asked)
       ray = rays.next();
     const WrongAnswers w = Judge(scene).ask(asked, seed);

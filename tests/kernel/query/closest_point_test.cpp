@@ -259,6 +259,25 @@ TEST(ClosestPoint, WithinARadiusOfZeroLiesOnTheSurface) {
   EXPECT_FALSE(closest_point(world, {corner.x * 1.001f, corner.y, corner.z}, 0));
 }
 
+/// Where the point before found nothing, the next one is looked for as if it were the first.
+TEST(ClosestPoint, AfterAPointWithoutOne) {
+  Scene s = one_triangle({-2, -2, .5f}, {2, -2, .5f}, {-2, 2, .5f});
+  for (int i = 0; i < 20; ++i)
+    s.geometry.spheres.add({-1.5f + .1f * static_cast<float>(i), -1.5f, 3}, .01f, 0);
+  const World world(s, {});
+  Random random(6);
+  std::vector<Float3> points;
+  for (int i = 0; i < 400; ++i)
+    points.push_back(random.chance(.5) ? random.point(40) : random.point(2));
+  std::vector<ClosestPoint> found(points.size());
+  closest_points(world, points, found, 1, {.threads = 1});
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const ClosestPoint alone = closest_point(world, points[i], 1);
+    EXPECT_EQ(found[i].id, alone.id);
+    EXPECT_EQ(found[i].distance, alone.distance);
+  }
+}
+
 TEST(ClosestPoint, OfSliversIsTheirs) {
   Random random(12);
   for (int i = 0; i < 20000; ++i) {

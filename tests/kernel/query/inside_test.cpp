@@ -1,4 +1,5 @@
 // Insides of meshes, against rational numbers.
+#include "grelha/all_hits.hpp"
 #include "grelha/distance.hpp"
 #include "grelha/inside.hpp"
 
@@ -16,7 +17,10 @@ constexpr std::size_t kPoints = 400;  ///< a mesh
 TEST(Contains, CountsAsRationalCrossings) {
   std::size_t judged = 0, within = 0, wound = 0;
   std::uint64_t seed = 0;
-  for (const Scene& s : closed_meshes()) {
+  std::vector<Scene> meshes = closed_meshes();
+  for (const Scene& s : flat_sided_meshes())
+    meshes.push_back(s);
+  for (const Scene& s : meshes) {
     const World world(s, {});
     const std::vector<Float3> points = points_around(s, ++seed, kPoints);
     std::vector<std::uint8_t> inside(points.size());
@@ -52,6 +56,21 @@ TEST(Contains, CountsAnyNumberOfCrossings) {
     EXPECT_EQ(contains(world, {.1f, .05f, .02f}), copies % 2 == 1) << copies;
     EXPECT_FALSE(contains(world, {2, 1, 0})) << copies;
   }
+}
+
+/// Of open meshes a point beside the box may be inside.
+TEST(Contains, CountsOddCrossingsFromAnywhere) {
+  Random random(3);
+  const Scene s = one_triangle({-2, -2, 0}, {2, -2, 0}, {0, 2, 0});
+  const World world(s, {});
+  std::size_t within = 0;
+  for (int i = 0; i < 400; ++i) {
+    const Float3 p = random.point(2);
+    const bool is_inside = contains(world, p, InsideRule::kOdd);
+    EXPECT_EQ(is_inside, count_crossings(world, {p, {.4375f, .8125f, .3125f}}) % 2 != 0);
+    within += is_inside;
+  }
+  EXPECT_GT(within, 20u);
 }
 
 std::string refusal(const World& world, InsideRule rule, MeshEdge& edge) {

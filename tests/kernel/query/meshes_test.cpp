@@ -165,6 +165,22 @@ TEST(Meshes, ThatAreHiddenAreNotThere) {
   }
 }
 
+/// Within its box, so that the box of the scene does not tell.
+TEST(Meshes, ThatMoveWhileTheyAreHiddenAreBuiltAnew) {
+  std::vector<Mesh> meshes = row_of_balls(2);
+  OffsetScene scene = joined(meshes);
+  OwningWorld world(scene, {});
+  show_mesh(scene, 0, false);
+  world.replace(scene, {}, {});
+  for (Float3& v : meshes[0].vertices)
+    v = {-v.x, -v.y, v.z};
+  const Object moved = move_mesh(scene, 0, PointArray(std::span(meshes[0].vertices)));
+  world.replace(scene, {}, {&moved, 1});
+  show_mesh(scene, 0, true);
+  world.replace(scene, {}, {});
+  expect_same_answers(world.world(), World(scene, {}));
+}
+
 /// A hidden mesh with a hole leaves the others closed.
 TEST(Meshes, ThatAreHiddenNeedNotBeClosed) {
   std::vector<Mesh> meshes = row_of_balls(2);

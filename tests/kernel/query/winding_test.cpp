@@ -1,6 +1,7 @@
 // Generalized winding numbers, against long double.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <bit>
 #include <limits>
 
@@ -52,9 +53,66 @@ TEST(WindingNumber, LeavesOutTrianglesThatAreNotFinite) {
   }
 }
 
+/// The winding number of a triangle by the kernel's formula, in 400 bits.
+double number_of_400_bits(const Float3 (&corner)[3], const Float3& p) {
+  const auto wide = [](double x) { return mpf_class(x, 400); };
+  std::array<std::array<mpf_class, 3>, 3> to;
+  for (std::size_t k = 0; k < 3; ++k)
+    to[k] = {wide(corner[k].x) - wide(p.x),
+             wide(corner[k].y) - wide(p.y),
+             wide(corner[k].z) - wide(p.z)};
+  const auto product = [](const auto& u, const auto& v) -> mpf_class {
+    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+  };
+  const auto size = [&](std::size_t k) -> mpf_class { return sqrt(product(to[k], to[k])); };
+  const std::array<mpf_class, 3> n = {to[0][1] * to[1][2] - to[0][2] * to[1][1],
+                                      to[0][2] * to[1][0] - to[0][0] * to[1][2],
+                                      to[0][0] * to[1][1] - to[0][1] * to[1][0]};
+  const mpf_class real = size(0) * size(1) * size(2) + product(to[0], to[1]) * size(2) +
+                         product(to[1], to[2]) * size(0) + product(to[2], to[0]) * size(1);
+  const mpf_class volume = product(n, to[2]);
+  const mpf_class scale = abs(real) + abs(volume);
+  return std::atan2(mpf_class(volume / scale).get_d(), mpf_class(real / scale).get_d()) /
+         (2 * std::numbers::pi);
+}
+
+/// Beside two long edges at once both parts of the complex number nearly cancel.
+TEST(WindingNumber, BesideNeedlesIsWithinTheErrorAllowed) {
+  Random random(12);
+  double nearest = 1;
+  for (int i = 0; i < 20000; ++i) {
+    const Float3 a = random.chance(.5) ? Float3{} : random.point(1);
+    const double size = random.log_in(1e-3, 1e3);
+    const Float3 b = at(a, size, random.direction());
+    const double width = size * random.log_in(1e-7, 1);
+    const Float3 c = at(random.chance(.5) ? a : b, width, random.direction());
+    const double along = random.unit();
+    const Float3 p = at(at(a, along, minus(b, a)),
+                        size * random.log_in(0x1p-24, .1) * (random.chance(.1) ? 100 : 1),
+                        random.direction());
+    const auto beside = [&](const Float3& from, const Float3& to) {
+      const oracle::V edge = brute::v(minus(to, from));
+      const oracle::V way = brute::v(minus(p, from));
+      return static_cast<double>(length(cross(edge, way)) / dot(edge, edge));
+    };
+    const double least = std::min({beside(a, b), beside(b, c), beside(c, a)});
+    if (!(least > 0x1p-24))
+      continue;
+    nearest = std::min(nearest, least);
+    const Scene s = one_triangle(a, b, c);
+    const World world(s, {});
+    const double expected = number_of_400_bits({a, b, c}, p);
+    ASSERT_NEAR(grelha::winding_number(world, p, 1e-12), expected, 1e-12 + 0x1p-42) << i;
+  }
+  EXPECT_LT(nearest, 0x1p-22);
+}
+
 /// A small triangle at the end of a stick that turns its face along it: what is left out is as
-/// large there as the bound says.
-TEST(WindingNumber, HasABoundThatIsReached) {
+/// large there as the bound says. Products of ten lengths leave the range of doubles.
+class WindingBound : public testing::TestWithParam<float> {};
+
+TEST_P(WindingBound, IsReached) {
+  const float scale = GetParam();
   Random random(5);
   double nearest = 0;
   for (int i = 0; i < 60; ++i) {
@@ -64,11 +122,11 @@ TEST(WindingNumber, HasABoundThatIsReached) {
     const Float3 e = normalized(cross(normal, across)), f = cross(normal, e);
     Scene s = empty_scene();
     const float size = .01f;
-    add_triangle(s, way, way + size * e, way + size * f);
+    add_triangle(s, scale * way, scale * (way + size * e), scale * (way + size * f));
     const Float3 other = -1.f * way;
-    add_triangle(s, other, other + 1e-5f * across, other + 1e-5f * up);
+    add_triangle(s, scale * other, scale * (other + 1e-5f * across), scale * (other + 1e-5f * up));
     const World world(s, {});
-    const Float3 point = static_cast<float>(random.log_in(2, 50)) * way;
+    const Float3 point = scale * (static_cast<float>(random.log_in(2, 50)) * way);
     const auto expected = static_cast<double>(winding_number(s.geometry.triangles, point));
     for (double error = 1e-12; error < 1e-3; error *= 1.05) {
       const double off = std::abs(grelha::winding_number(world, point, error) - expected);
@@ -78,6 +136,8 @@ TEST(WindingNumber, HasABoundThatIsReached) {
   }
   EXPECT_GT(nearest, .5);
 }
+
+INSTANTIATE_TEST_SUITE_P(Sizes, WindingBound, testing::Values(1, 0x1p-108f, 0x1p100f));
 
 /// However little error is allowed, and from however far away.
 TEST(WindingNumber, IsWithinTheErrorAllowed) {
