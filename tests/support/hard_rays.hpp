@@ -99,13 +99,16 @@ class HardRays {
       if (*x == 0)
         *x = denormal();
     ray.dir = random_.chance(.5) ? axis_or_diagonal() : random_.direction();
-    set_length(ray);
+    if (random_.chance(.5))
+      ray.dir = at({0, 0, 0}, 200, ray.dir);
+    else
+      set_length(ray);
     if (random_.chance(.3))
       set_ends(ray, target);
     return ray;
   }
   float denormal() {
-    const auto steps = static_cast<float>(1 + random_.below(1u << random_.below(9)));
+    const auto steps = static_cast<float>(1 + random_.below(1u << random_.below(6)));
     return random_.sign() < 0 ? -steps * 0x1p-149f : steps * 0x1p-149f;
   }
 
