@@ -3,7 +3,7 @@
 // once per instruction set.
 
 #include "kernel/shade/strip.hpp"
-#include "kernel/query/crossing_sum.hpp"
+#include "kernel/query/collect.hpp"
 #include "kernel/query/loops.hpp"
 #include "kernel/query/nearest_search.hpp"
 #include "kernel/query/winding_sum.hpp"
@@ -16,7 +16,7 @@ const VariantLoops kLoops{.closest = closest,
                           .closest_one = closest_one,
                           .occluded_one = occluded_one,
                           .closest_points = closest_points,
-                          .sum_crossings = sum_crossings,
+                          .collect = collect,
                           .winding_numbers = winding_numbers,
                           .sort_by_winding = sort_by_winding,
                           .render_strip = render_strip,

@@ -1,159 +1,119 @@
 #include <algorithm>
-#include <cmath>
-#include <stdexcept>
+#include <limits>
 #include <vector>
 
 #include "grelha/all_hits.hpp"
-#include "kernel/query/filters.hpp"
-#include "kernel/query/hit_list.hpp"
+#include "kernel/query/facing.hpp"
 #include "kernel/query/lists.hpp"
+#include "kernel/query/ray_lists.hpp"
+#include "kernel/shapes/exact_hits.hpp"
 
 namespace grelha {
 namespace {
 
-/// Gathers the triangles that one ray crosses, edges and vertices decided by simulation of
-/// simplicity.
-class CrossingList {
+/// The triangles that a ray crosses, edges and vertices decided by simulation of simplicity.
+class CrossingList : public ListedRay {
  public:
-  CrossingList(const World& world, const Ray& ray, const Filter& filter)
-      : scene_(world.impl().view), filter_(filter), given_(ray), prepared_(scene_, ray) {
-    if (!prepared_.valid)
-      return;
-    ray_ = prepared_.exact();
-    walk_scene(scene_, prepared_.single, *this);
-    std::sort(found_.begin(), found_.end(), [](const CrossedTriangle& a, const CrossedTriangle& b) {
-      return a.id < b.id;
-    });
-    // a triangle may stand in several cells
-    const auto same = [](const CrossedTriangle& a, const CrossedTriangle& b) {
-      return a.id == b.id;
-    };
-    found_.erase(std::unique(found_.begin(), found_.end(), same), found_.end());
-    apply_filter();
-  }
+  using ListedRay::ListedRay;
+  static constexpr Wanted kWanted = Wanted::kTriangles;
 
-  // For walk_scene().
-  static constexpr bool kInAnyOrder = true;
-  bool block(const scalar::Single&, const TriangleBlock& block) {
-    for (int i = 0; i < kBlock && block.id[i] != kNoPrimitive; ++i)
-      take(block.id[i], scalar::triangle_of(block, i));
-    return false;
+  std::uint32_t count(std::span<const Candidate> candidates) {
+    std::uint32_t sum = 0;
+    for (const Candidate& c : candidates)
+      if (crosses(c))
+        each_passing(c.id, [&](std::uint32_t) { ++sum; });
+    return sum;
   }
-  bool arrays(const scalar::Single&, const CellLists&, std::size_t) { return false; }
-
-  std::size_t count() const { return found_.size(); }
 
   /// In the order in which the ray crosses them.
-  std::vector<Crossing> in_order() {
-    std::stable_sort(
-        found_.begin(), found_.end(), [this](const CrossedTriangle& a, const CrossedTriangle& b) {
-          return is_before(a, b);
-        });
-    std::vector<Crossing> crossings;
+  void find(std::span<const Candidate> candidates, std::vector<Crossing>& crossings) {
+    found_.clear();
+    for (const Candidate& c : candidates) {
+      if (!crosses(c))
+        continue;
+      CrossedTriangle one{c.id, c, -kNoEnd, kNoEnd};
+      double lo = 0;
+      double hi = 0;
+      if (c.sure > 0 && bound_plane(c, lo, hi)) {
+        one.lo = lo;
+        one.hi = hi;
+      }
+      each_passing(c.id, [&](std::uint32_t id) {
+        one.id = id;
+        found_.push_back(one);
+      });
+    }
+    if (found_.size() > 1)
+      std::stable_sort(
+          found_.begin(), found_.end(), [this](const CrossedTriangle& a, const CrossedTriangle& b) {
+            return is_before(a, b);
+          });
     for (const CrossedTriangle& f : found_)
-      crossings.push_back(
-          {scalar::strictly_between(t_of(f), given_.t_min, given_.t_max), f.id, enters(f)});
-    return crossings;
+      crossings.push_back({t_of(f), f.id, is_crossed_inwards(scaled(), corners(f).corner)});
   }
 
  private:
   struct CrossedTriangle {
     std::uint32_t id;
-    Triangle::Fields<float> triangle;
-    double lo, hi;  ///< t lies between, in multiples of the prepared ray's unit
+    Candidate original;
+    double lo, hi;  ///< t lies between
   };
-
-  void take(std::uint32_t id, const Triangle::Fields<float>& triangle) {
-    const scalar::HitInterval<double> bound = scalar::bound_triangle(ray_, triangle.corner);
-    if (!bound.some || bound.lo >= ray_.t_max)
-      return;
-    const bool is_sure = bound.sure && bound.hi < ray_.t_max;
-    if (is_sure)
-      found_.push_back({id, triangle, bound.lo, bound.hi});
-    else if (crosses_beside(ray_, triangle.corner))
-      found_.push_back({id, triangle, -kNoEnd, kNoEnd});
+  static Triangle::Fields<float> corners(const CrossedTriangle& f) {
+    return scalar::triangle_of(*f.original.block, f.original.index);
   }
 
-  /// Replaces originals by themselves and their copies, as far as these pass.
-  void apply_filter() {
-    if (scene_.copies.count == 0 && filter_.skip == kNoPrimitive && filter_.masks.empty())
-      return;
-    std::vector<CrossedTriangle> all;
-    const auto add = [&](CrossedTriangle f, std::uint32_t id) {
-      f.id = id;
-      if (passes(filter_, id))
-        all.push_back(f);
-    };
-    const CopyTable& copies = scene_.copies;
-    for (const CrossedTriangle& f : found_) {
-      add(f, f.id);
-      for (std::uint32_t i = copies.begin(f.id); copies.has(i, f.id); ++i)
-        add(f, copies.pair[i].copy);
-    }
-    found_ = std::move(all);
+  bool crosses(const Candidate& c) {
+    return c.block &&
+           (c.sure > 0 || crosses_aside(scaled(), scalar::triangle_of(*c.block, c.index)));
   }
 
-  bool is_before(const CrossedTriangle& a, const CrossedTriangle& b) const {
+  bool is_before(const CrossedTriangle& a, const CrossedTriangle& b) {
     if (a.hi < b.lo || b.hi < a.lo)
       return a.hi < b.lo;
-    const int order = order_beside(ray_, a.triangle.corner, b.triangle.corner);
+    const int order = order_beside(scaled(), corners(a).corner, corners(b).corner);
     return order != 0 ? order < 0 : a.id < b.id;
   }
 
-  float t_of(const CrossedTriangle& f) const {
-    const ExactRay ray = prepared_.given(ray_);
-    float t = 0;
-    if (!scalar::round_plane_t(ray, f.triangle.corner, t))
-      t = cross_plane_of(ray, f.triangle.corner).rounded() + 0.f;  // no zero is -0
-    return t;
+  float t_of(const CrossedTriangle& f) {
+    return rounded(scaled(), f.lo, f.hi, [&](const ExactRay& ray) {
+      const Triangle::Fields<float> triangle = corners(f);
+      float t = 0;
+      return scalar::round_plane_t(ray, triangle.corner, t)
+                 ? t
+                 : cross_plane_of(ray, triangle.corner).rounded();
+    });
   }
-  bool enters(const CrossedTriangle& f) const { return crosses_front(ray_, f.triangle.corner); }
 
   static constexpr double kNoEnd = std::numeric_limits<double>::infinity();
-
-  const SceneView& scene_;
-  const Filter& filter_;
-  Ray given_;
-  PreparedRay prepared_;
-  ExactRay ray_{};
   std::vector<CrossedTriangle> found_;
 };
 
 }  // namespace
 
 std::vector<Crossing> crossings(const World& world, const Ray& ray, const Filter& filter) {
-  expect_masks(world, filter.masks);
-  return CrossingList(world, ray, filter).in_order();
+  return list_one<CrossingList, Crossing>(world, ray, filter);
 }
 
 CrossingLists crossings(const World& world, const Rays& rays, const QueryOptions& options) {
-  expect_arrays(rays);
-  expect_masks(world, options.mask);
   CrossingLists lists;
-  list_each(rays.count, options, lists.offset, lists.crossings, [&](std::size_t i) {
-    return CrossingList(world, ray_of(rays, i), filter_of(rays, options, i)).in_order();
-  });
+  list_each<CrossingList>(world, rays, options, lists.offset, lists.crossings);
   return lists;
 }
 
 std::size_t count_crossings(const World& world, const Ray& ray, const Filter& filter) {
-  expect_masks(world, filter.masks);
-  return CrossingList(world, ray, filter).count();
+  std::uint32_t count = 0;
+  Rays one = Rays::of({&ray, 1});
+  one.skip = &filter.skip;
+  one.mask = &filter.mask;
+  count_crossings(world, one, &count, {.mask = filter.masks});
+  return count;
 }
 
 void count_crossings(const World& world,
                      const Rays& rays,
                      std::uint32_t* counts,
                      const QueryOptions& options) {
-  expect_arrays(rays);
-  expect_masks(world, options.mask);
-  if (!counts && rays.count > 0)
-    throw std::invalid_argument("count_crossings: expected an array of counts, found null");
-  each_run(rays.count, options, [&](std::size_t first, std::size_t end) {
-    for (std::size_t i = first; i < end; ++i)
-      counts[i] = static_cast<std::uint32_t>(
-          CrossingList(world, ray_of(rays, i), filter_of(rays, options, i)).count());
-  });
+  count_each<CrossingList>(world, rays, counts, options, "count_crossings");
 }
 
 }  // namespace grelha

@@ -1,27 +1,18 @@
 #include "grelha/inside.hpp"
 
-#include <algorithm>
+#include <limits>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
-#include "grelha/all_hits.hpp"
 #include "kernel/grid/world_impl.hpp"
-#include "kernel/query/crossing_sum.hpp"
+#include "kernel/query/facing.hpp"
 #include "kernel/query/insides.hpp"
+#include "kernel/query/lists.hpp"
 #include "kernel/query/runs.hpp"
 
 namespace grelha {
 namespace {
-
-/// How often the ray from a point leaves meshes, less how often it enters them.
-std::int64_t winding(const World& world, Float3 point, const CrossingSum& sum) {
-  if (sum.is_whole)
-    return sum.outwards;
-  std::int64_t outwards = 0;
-  for (const Crossing& at : crossings(world, {point, scalar::kInsideDirection}))
-    outwards += at.enters ? -1 : 1;
-  return outwards;
-}
 
 bool is_in_box(const SceneView& scene, const Float3& p) {
   return p.x >= scene.box_lo[0] && p.x <= scene.box_hi[0] && p.y >= scene.box_lo[1] &&
@@ -59,37 +50,42 @@ void prepare_insides(const World& world, InsideRule rule) {
 
 namespace {
 
-/// Points that are asked by crossings, so many at a time.
-struct AskedPoints {
-  static constexpr std::size_t kMost = 64;
-  Float3 point[kMost];
-  std::size_t place[kMost];  ///< in the caller's array
-  std::size_t count = 0;
-  bool is_full() const { return count == kMost; }
-  void add(const Float3& p, std::size_t at) {
-    place[count] = at;
-    point[count++] = p;
-  }
-};
+/// The direction of rays that tell whether points are inside: no axis, plane of a lattice or
+/// diagonal of a cube, so that few meet edges.
+constexpr Float3 kInsideDirection{.4375f, .8125f, .3125f};
 
-/// Answers and forgets the points that are asked. By winding, inside has the triangles' answers.
-void answer(const Variant& variant,
-            const World& world,
-            AskedPoints& asked,
-            InsideRule rule,
-            std::uint8_t* inside) {
-  CrossingSum sums[AskedPoints::kMost];
-  variant.loops.sum_crossings(world.impl().view, asked.point, asked.count, sums);
-  for (std::size_t k = 0; k < asked.count; ++k) {
-    std::uint8_t& one = inside[asked.place[k]];
-    bool is_inside = rule == InsideRule::kWinding && one != 0;
-    if (rule != InsideRule::kWinding) {
-      const std::int64_t around = winding(world, asked.point[k], sums[k]);
-      is_inside = rule == InsideRule::kNonzero ? around != 0 : around % 2 != 0;
+bool is_in_sphere(const GeometryView& g, std::uint32_t id, const double (&point)[3]) {
+  if (!g.ids.has(PrimitiveKind::kSphere, id))
+    return false;
+  const Sphere::Fields<float> sphere =
+      primitive_at<Sphere>(g.of<Sphere>(), id - g.ids.begin(PrimitiveKind::kSphere));
+  return is_within(point, sphere.center, sphere.radius);
+}
+
+/// Where the ray from a point leaves meshes and where it enters them, and whether the point is in a
+/// sphere.
+struct Surroundings {
+  std::int64_t outwards = 0;  ///< triangles, less those that are crossed inwards
+  bool in_sphere = false;
+};
+Surroundings surroundings(const SceneView& scene,
+                          const ExactRay& ray,
+                          std::span<const Candidate> candidates) {
+  Surroundings found;
+  for (const Candidate& c : candidates) {
+    if (!c.block) {
+      found.in_sphere = found.in_sphere || is_in_sphere(scene.geometry, c.id, ray.org);
+      continue;
     }
-    one = is_inside || sums[k].in_sphere;
+    const Triangle::Fields<float> triangle = scalar::triangle_of(*c.block, c.index);
+    if (c.sure == 0 && !crosses_aside(ray, triangle))
+      continue;
+    const int by = is_crossed_inwards(ray, triangle.corner) ? -1 : 1;
+    found.outwards += by;
+    for (std::uint32_t i = scene.copies.begin(c.id); scene.copies.has(i, c.id); ++i)
+      found.outwards += by;
   }
-  asked.count = 0;
+  return found;
 }
 
 }  // namespace
@@ -103,22 +99,41 @@ void find_insides(const Variant& variant,
   if (!by_crossings)
     variant.loops.sort_by_winding(winding_tree(world), points.data(), points.size(), inside);
   const World::Impl& w = world.impl();
-  if (!by_crossings && w.primitives.of<Sphere>().size() == 0)
+  const bool any_spheres = w.primitives.of<Sphere>().size() > 0;
+  if (!by_crossings && !any_spheres)
     return;
   // a point beside the box of closed meshes is in none; a sphere's box is rounded
-  const bool by_box = (rule == InsideRule::kClosed || rule == InsideRule::kNonzero) &&
-                      w.primitives.of<Sphere>().size() == 0;
-  AskedPoints asked;
+  const bool by_box = (rule == InsideRule::kClosed || rule == InsideRule::kNonzero) && !any_spheres;
+  std::vector<Float3> asked;
+  std::vector<std::size_t> index;  // of those in `points`
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (by_box && !is_in_box(w.view, points[i]))
+    if (by_box && !is_in_box(w.view, points[i])) {
       inside[i] = 0;
-    else
-      asked.add(points[i], i);
-    if (asked.is_full())
-      answer(variant, world, asked, rule, inside);
+      continue;
+    }
+    asked.push_back(points[i]);
+    index.push_back(i);
   }
-  if (asked.count > 0)
-    answer(variant, world, asked, rule, inside);
+  Rays rays = Rays::of(asked, asked);
+  rays.dir_stride = 0;
+  rays.dir[0] = &kInsideDirection.x;
+  rays.dir[1] = &kInsideDirection.y;
+  rays.dir[2] = &kInsideDirection.z;
+  const auto decide = [&](std::size_t k, std::span<const Candidate> candidates) {
+    const Float3& p = asked[k];
+    const ExactRay ray{{p.x, p.y, p.z},
+                       {kInsideDirection.x, kInsideDirection.y, kInsideDirection.z},
+                       0,
+                       std::numeric_limits<double>::infinity()};
+    const Surroundings found = surroundings(w.view, ray, candidates);
+    std::uint8_t& one = inside[index[k]];
+    bool is_inside = rule == InsideRule::kWinding && one != 0;
+    if (by_crossings)
+      is_inside = rule == InsideRule::kNonzero ? found.outwards != 0 : found.outwards % 2 != 0;
+    one = is_inside || found.in_sphere;
+  };
+  const Wanted wanted = any_spheres ? Wanted::kTrianglesAndSpheresAround : Wanted::kTriangles;
+  visit_candidates(variant, world, rays, wanted, decide);
 }
 
 bool contains(const World& world, Float3 point, InsideRule rule) {

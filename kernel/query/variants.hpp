@@ -12,6 +12,7 @@
 #include "grelha/stats.hpp"
 #include "kernel/grid/view.hpp"
 #include "kernel/grid/winding_tree.hpp"
+#include "kernel/traverse/candidates.hpp"
 
 namespace grelha {
 
@@ -26,14 +27,8 @@ using OccludedLoop =
 using ClosestPointsLoop =
     void (*)(const SceneView&, const Float3*, std::size_t count, float radius, ClosestPoint*);
 
-/// Sums of the crossings of a ray from a point; see contains().
-struct CrossingSum {
-  std::int32_t outwards = 0;  ///< triangles, less those that are crossed inwards
-  bool in_sphere = false;     ///< the point lies in a sphere
-  bool is_whole = true;       ///< false: there are too many for `outwards`
-};
-/// Adds up the crossings of rays from [count] points.
-using CrossingSumLoop = void (*)(const SceneView&, const Float3*, std::size_t count, CrossingSum*);
+/// Lists what each ray may cross between its ends.
+using CollectLoop = void (*)(const SceneView&, const Rays&, CandidateSink&);
 
 /// Winding numbers of [count] points, within `error`.
 using WindingLoop = void (*)(
@@ -54,7 +49,7 @@ struct VariantLoops {
   Hit (*closest_one)(const SceneView&, const Ray&, const Filter*);
   bool (*occluded_one)(const SceneView&, const Ray&, const Filter*);
   ClosestPointsLoop closest_points;
-  CrossingSumLoop sum_crossings;
+  CollectLoop collect;
   WindingLoop winding_numbers;
   SortByWindingLoop sort_by_winding;
   void (*render_strip)(const SceneView&,

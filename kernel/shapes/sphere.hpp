@@ -218,6 +218,54 @@ template <class Real>
           select(past, leave_hi, enter_hi)};
 }
 
+/// Spheres that rays cross between t_min and `best`, at any t.
+template <class Real>
+struct SphereCrossings {
+  Mask<Real> some;       ///< not surely none
+  Mask<Real> one, both;  ///< surely once, surely twice
+};
+template <class Real>
+[[gnu::always_inline]] inline SphereCrossings<Real> count_crossings(
+    const SimdRays<Real>& ray, const Sphere::Fields<Real>& sphere, const Real& best) {
+  const Real o(0);
+  const Chord<Real> chord(ray, sphere);
+  const Mask<Real> some = chord.may_be(ray, sphere.radius);
+  if (none(some))
+    return {some, some, some};
+  const SphereSide<Real> side(ray, chord, magnitude(sphere.radius));
+  const Real most = square_root(max(chord.inside + side.error_bound, o) * ray.inv_dd);
+  const Real least = square_root(max(chord.inside - side.error_bound, o) * ray.inv_dd);
+  const Real slack = side.w * ray.inv_length + units<Real>(4) * most;
+  const auto between = [&](const Real& lo, const Real& hi) {
+    return mask_and(lo - slack > ray.t_min, hi + slack < best);
+  };
+  const auto beside = [&](const Real& lo, const Real& hi) {
+    return mask_or(hi + slack <= ray.t_min, lo - slack >= best);
+  };
+  const Real& t = chord.middle;
+  const Mask<Real> crosses = mask_and(some, chord.inside > side.error_bound);
+  const Mask<Real> shown = sphere.radius > o;
+  const Mask<Real> enters = mask_and(between(t - most, t - least), shown);
+  const Mask<Real> does_not_enter = mask_or(beside(t - most, t - least), sphere.radius < o);
+  const Mask<Real> leaves = between(t + least, t + most);
+  const Mask<Real> does_not_leave = beside(t + least, t + most);
+  const Mask<Real> one =
+      mask_or(mask_and(enters, does_not_leave), mask_and(does_not_enter, leaves));
+  const Mask<Real> nothing = mask_and(crosses, mask_and(does_not_enter, does_not_leave));
+  return {and_not(some, mask_or(nothing, chord.inside + side.error_bound < o)),
+          mask_and(crosses, one),
+          mask_and(crosses, mask_and(enters, leaves))};
+}
+
+/// Lanes of spheres that a ray does not surely start outside of.
+template <class Real>
+[[gnu::always_inline]] inline Mask<Real> may_start_inside(const SimdRays<Real>& ray,
+                                                          const Sphere::Fields<Real>& sphere) {
+  const Chord<Real> chord(ray, sphere);
+  const SphereSide<Real> side(ray, chord, magnitude(sphere.radius));
+  return and_not(ray.t_min == ray.t_min, side.outside);
+}
+
 /// Narrows spans that hold a crossing each; not `sure` where it may not.
 ///
 /// Source    Moore, Interval Analysis (1966): one step of Newton's method from the middle of the

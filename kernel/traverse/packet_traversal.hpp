@@ -370,7 +370,7 @@ inline void traverse_packet(
   }
   p.live = apart;
   if (apart != 0)
-    stream_traverse<kAny>(g, p, n);
+    stream_traverse<kAny ? Find::kAny : Find::kClosest>(g, p, n);
   p.live = live;
 }
 

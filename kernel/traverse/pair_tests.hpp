@@ -8,7 +8,7 @@
 namespace grelha::GRELHA_ISA {
 
 /// Lists pairs of the rays of a packet and the triangles of a grid, and tests them.
-template <bool kAny>
+template <Find kFind>
 class PairTests {
  public:
   PairTests(const GridView& g, Packet& p) : blocks_(g.lists.template of<Triangle>().blocks), p_(p) {
@@ -180,6 +180,13 @@ class PairTests {
                              load<Block>(pairs.shear[2]),
                              Block(p_.frame_error)};
     const Block best = load<Block>(pairs.best);
+    if constexpr (kFind == Find::kAll) {
+      list(first,
+           some,
+           listed_lanes(bound_triangle<Block>(source(), shear, load<Block>(pairs.t_min), best),
+                        best));
+      return;
+    }
     const HitInterval<Block> found =
         intersect_triangle(source, shear, load<Block>(pairs.t_min), best);
     const unsigned lanes = bits(mask_and(found.some, found.lo <= best)) & ((1u << some) - 1u);
@@ -191,7 +198,18 @@ class PairTests {
     each_bit(lanes, [&](int k) { take(first + k, {lo[k], hi[k]}); });
   }
 
+  [[gnu::always_inline]] void list(int first, int some, const ListedLanes& lanes) {
+    each_bit(lanes.some & ((1u << some) - 1u), [&](int k) {
+      const PacketRay r{p_, ray(first + k)};
+      const std::uint32_t triangle = triangle_[first + k];
+      const unsigned sure = (lanes.sure >> k & 1) & knows_end(r);
+      list_candidate(
+          r, id(first + k), blocks_ + triangle / kBlock, static_cast<int>(triangle % kBlock), sure);
+    });
+  }
+
   void take(int pair, const CrossingSpan& t) {
+    constexpr bool kAny = kFind == Find::kAny;
     const PacketRay r{p_, ray(pair)};
     if (take_hit<kAny>(r, t, id(pair)))
       set_hit(r, {-kInfinity, -kInfinity}, id_of(r));

@@ -4,6 +4,7 @@
 #include "kernel/grid/view.hpp"
 #include "kernel/shapes/exact_hits.hpp"
 #include "kernel/shapes/sphere.hpp"
+#include "kernel/traverse/candidates.hpp"
 #include "kernel/traverse/ray_filter.hpp"
 
 namespace grelha::GRELHA_ISA {
@@ -14,10 +15,11 @@ inline constexpr float kInfinity = __builtin_inff();
 struct RayFrame {
   const GeometryView* geometry = nullptr;
   GivenRays given;
-  const RayFilter* filter = nullptr;  ///< null: rays hit everything
-  const float* base = nullptr;        ///< x, y, z of where the frame begins; null: 0
-  float frame_error = 0;              ///< error of coordinates in the frame
-  float error_bound = kInfinity;      ///< see SimdRays
+  const RayFilter* filter = nullptr;    ///< null: rays hit everything
+  CandidateSink* candidates = nullptr;  ///< of searches for all hits
+  const float* base = nullptr;          ///< x, y, z of where the frame begins; null: 0
+  float frame_error = 0;                ///< error of coordinates in the frame
+  float error_bound = kInfinity;        ///< see SimdRays
 
   /// True if ray i hits nothing where it crosses primitive `id`.
   bool leaves_out(int i, std::uint32_t id) const {

@@ -60,6 +60,12 @@ inline Vec3<float> set_length_unit(Single& r, const Ray& ray) {
   return {dir.x / unit, dir.y / unit, dir.z / unit};
 }
 
+/// t of a hit between the ends of its search, which rounding may have taken it to.
+inline float strictly_between(float t, float t_min, float t_max) {
+  const float after = t > t_min ? t : next_above(t_min);
+  return (after < t_max ? after : next_below(t_max)) + 0.f;  // no zero is -0
+}
+
 /// Prepares a ray by itself, as prepare(Packet&) does many. False: it hits nothing, r is
 /// incomplete.
 inline bool prepare(Single& r, const Ray& ray, bool any_triangles) {

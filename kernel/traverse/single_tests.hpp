@@ -195,4 +195,100 @@ template <bool kAny, class Ray, class Counts>
   return over;
 }
 
+/// What a search looks for: the closest hit, any hit, or all primitives that a ray may cross.
+enum class Find { kClosest, kAny, kAll };
+
+/// Lists a primitive that a ray may cross.
+template <class Ray>
+[[gnu::always_inline]] inline void list_candidate(Ray r,
+                                                  std::uint32_t id,
+                                                  const TriangleBlock* block = nullptr,
+                                                  int index = 0,
+                                                  unsigned sure = 0) {
+  CandidateSink& to = *r.rays.candidates;
+  if (to.count == to.capacity)
+    to.make_room();
+  to.items[to.count++] = {block,
+                          id,
+                          static_cast<std::uint16_t>(r.i),
+                          static_cast<std::uint8_t>(index),
+                          static_cast<std::uint8_t>(sure)};
+}
+
+/// True if floats tell whether a crossing comes before the end of a ray's search. They do not where
+/// the end was rounded.
+inline bool knows_end(PacketRay r) {
+  return r.rays.best[r.i] == kInfinity ||
+         (!r.rays.base && (!r.rays.has_units || r.rays.unit[r.i] == 1));
+}
+inline bool knows_end(SingleRay r) {
+  return *r.rays.best == kInfinity || (!r.rays.base && *r.rays.unit == 1);
+}
+
+/// Lanes that a ray may cross, and of those the ones that it surely does.
+struct ListedLanes {
+  unsigned some, sure;
+};
+[[gnu::always_inline]] inline ListedLanes listed_lanes(const HitInterval<Block>& found,
+                                                       const Block& best) {
+  return {bits(found.some), bits(mask_and(found.sure, found.hi < best))};
+}
+
+/// Lists the triangles of a block that a ray may cross.
+template <class Ray>
+inline void list_triangles(Ray r, const TriangleBlock& block) {
+  const Shear<Block> shear{Block(r.rays.shear[0][r.i]),
+                           Block(r.rays.shear[1][r.i]),
+                           Block(r.rays.shear[2][r.i]),
+                           Block(r.rays.frame_error)};
+  const Block best(r.rays.best[r.i]);
+  for (int i = 0; i < kBlock; i += kWidth<Block>) {
+    const BlockSource<Ray> with{r, &block, i};
+    const ListedLanes lanes =
+        listed_lanes(bound_triangle<Block>(with(), shear, Block(r.rays.t_min[r.i]), best), best);
+    each_bit(lanes.some, [&](int k) {
+      if (block.id[i + k] != kNoPrimitive)
+        list_candidate(r, block.id[i + k], &block, i + k, (lanes.sure >> k & 1) & knows_end(r));
+    });
+  }
+}
+
+/// Lists the primitives of a kind in a cell that a ray may cross.
+template <class Shape, class Ray>
+inline void list_rows(Ray r, const typename Shape::CellList& list, std::size_t cell) {
+  const Wanted wanted = r.rays.candidates->wanted;
+  if (wanted == Wanted::kTriangles)
+    return;
+  const SimdRays<Block> ray = spread<Block>(r);
+  const std::uint32_t end = list.first[cell + 1];
+  for (std::uint32_t i = list.first[cell]; i < end; i += kWidth<Block>) {
+    const auto row = side_by_side<Shape, Block>(list.fields, i);
+    const unsigned left = end - i;
+    const unsigned there = left < kWidth<Block> ? (1u << left) - 1u : (1u << kWidth<Block>)-1u;
+    unsigned some = there;
+    if constexpr (requires { may_intersect(ray, row); })
+      some &= bits(may_intersect(ray, row));
+    if (some == 0)
+      continue;
+    unsigned one = 0;
+    unsigned both = 0;
+    if constexpr (Shape::kKind == PrimitiveKind::kSphere) {
+      if (wanted == Wanted::kTrianglesAndSpheresAround) {
+        some &= bits(may_start_inside(ray, row));
+      } else {
+        const SphereCrossings<Block> found = count_crossings(ray, row, Block(r.rays.best[r.i]));
+        some &= bits(found.some);
+        one = bits(found.one);
+        both = bits(found.both);
+      }
+    } else if (wanted == Wanted::kTrianglesAndSpheresAround) {
+      return;
+    }
+    each_bit(some, [&](int k) {
+      const unsigned sure = knows_end(r) ? (one >> k & 1) + 2 * (both >> k & 1) : 0;
+      list_candidate(r, list.id[i + static_cast<unsigned>(k)], nullptr, 0, sure);
+    });
+  }
+}
+
 }  // namespace grelha::GRELHA_ISA

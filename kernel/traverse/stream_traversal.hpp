@@ -24,7 +24,7 @@ template <class T>
 inline constexpr std::size_t kAskedFor = 16;
 
 /// Tests rays against the contents of the cells they came to.
-template <bool kAny>
+template <Find kFind>
 class CellTests {
  public:
   CellTests(const GridView& g, Packet& p, TraceCounts& n)
@@ -43,6 +43,7 @@ class CellTests {
   }
 
  private:
+  static constexpr bool kAny = kFind == Find::kAny;
   static constexpr int kMost = 512;  ///< blocks that are due at once
 
   bool searches(int ray) const { return p_.best[ray] > p_.t_min[ray]; }
@@ -104,7 +105,10 @@ class CellTests {
     if constexpr (sizeof(typename Shape::template Fields<float>) <= kAskedFor)
       for (int k = 0; k < to.count; ++k)
         fetch<Shape>(list, list.first[to.cell[k]]);
-    if constexpr (!kAny && kSortsOut<Shape>)
+    if constexpr (kFind == Find::kAll)
+      for (int k = 0; k < to.count; ++k)
+        list_rows<Shape>(PacketRay{p_, static_cast<int>(to.ray[k])}, list, to.cell[k]);
+    else if constexpr (!kAny && kSortsOut<Shape>)
       test_selected_rows<Shape>(list, to);
     else
       for (int k = 0; k < to.count; ++k) {
@@ -173,7 +177,7 @@ class CellTests {
   std::uint32_t end_[kPacket];
   alignas(64) std::uint32_t due_ray_[kMost + kBlock];
   alignas(64) std::uint32_t due_block_[kMost + kBlock];
-  PairTests<kAny> pairs_;
+  PairTests<kFind> pairs_;
 };
 
 /// The live rays of a packet through a grid, each from p.start on and on its own (Amanatides & Woo
@@ -182,12 +186,12 @@ class CellTests {
 /// of the cell. Plane distances come from the plane's index, never by adding up; if float takes a
 /// ray to the wrong side of a corner, the error is less than the pad around primitives
 /// (docs/numerics.md).
-template <bool kAny>
+template <Find kFind>
 [[gnu::noinline]] void stream_traverse(const GridView& g, Packet& p, TraceCounts& n) {
   ActiveRays rays(g, p);
   if (!rays.any())
     return;
-  CellTests<kAny> tests(g, p, n);
+  CellTests<kFind> tests(g, p, n);
   LeafQueue leaves;
   // No walk crosses more planes than there are, whatever rounding does.
   const int most = g.n[0] + g.n[1] + g.n[2] + 3;

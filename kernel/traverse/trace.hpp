@@ -141,10 +141,4 @@ template <bool kAny>
   each_grid<kAny>(scene, p, [&](const GridView& g) { search_grid<kAny>(g, p, options, n); });
 }
 
-/// t of a hit between the ends of its search, which rounding may have taken it to.
-inline float strictly_between(float t, float t_min, float t_max) {
-  const float after = t > t_min ? t : next_above(t_min);
-  return (after < t_max ? after : next_below(t_max)) + 0.f;  // no zero is -0
-}
-
 }  // namespace grelha::GRELHA_ISA

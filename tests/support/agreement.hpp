@@ -113,7 +113,7 @@ class Judge {
     const Hit first = exact.empty() ? Hit{ray.t_max} : hit_of(ray, exact.front());
     w.closest = !same(a.closest[i], first) || !same(closest(world_, ray), first);
     w.occluded = (a.blocked[i] != 0) != bool(first) || occluded(world_, ray) != bool(first);
-    w.lists = !is_list(ray, a.lists.of(i), exact);
+    w.lists = !is_list(ray, a.lists.of(i), exact) || !is_list(ray, all_hits(world_, ray), exact);
     w.counts = a.counts[i] != exact.size();
     const auto* const exact_passing = first_passing(exact, a.skip[i], a.mask[i]);
     const Hit passing = exact_passing ? hit_of(ray, *exact_passing) : Hit{ray.t_max};
@@ -123,7 +123,8 @@ class Judge {
                 occluded(world_, ray, filter) != bool(passing) ||
                 (exact_passing && !is_near(a.t_double[i], exact_passing->first));
     w.uv = first && !are_weights(ray, first.id, a.u[i], a.v[i]);
-    w.crossings = !is_crossed(ray, a.crossings.of(i), a.crossing_counts[i], exact);
+    w.crossings = !is_crossed(ray, a.crossings.of(i), a.crossing_counts[i], exact) ||
+                  count_crossings(world_, ray) != a.crossing_counts[i];
     return w;
   }
 

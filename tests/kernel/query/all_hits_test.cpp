@@ -6,6 +6,7 @@
 
 #include <stdexcept>
 
+#include "kernel/query/variants.hpp"
 #include "tests/support/brute_force.hpp"
 #include "tests/support/closed.hpp"
 #include "tests/support/random.hpp"
@@ -71,25 +72,62 @@ TEST(AllHits, BeginWithTheClosest) {
   }
 }
 
+/// Directions of any length, starts near and far, ends before and behind hits.
+std::vector<Ray> rays_of_any_length(std::uint64_t seed, std::size_t count) {
+  std::vector<Ray> rays = random_rays(seed, count);
+  Random random(seed);
+  for (Ray& ray : rays) {
+    if (random.chance(.3))
+      ray.org = at(ray.org, random.chance(.5) ? -20 : -1e5, ray.dir);
+    if (random.chance(.3))
+      ray.dir = at({0, 0, 0}, random.log_in(1e-7, 1e7), ray.dir);
+  }
+  return rays;
+}
+
 TEST(AllHits, OfAStreamAreThoseOfEachRay) {
-  const Scene s = random_mixture(6, 300);
+  Scene s = random_mixture(6, 300);
+  for (std::size_t i = 0; i < s.geometry.spheres.size(); i += 3)
+    s.geometry.spheres.radius[i] *= -1;  // seen from inside alone
   const World world(s, {});
-  const std::vector<Ray> rays = random_rays(7, 9000);
-  for (const int threads : {1, 3}) {
-    const HitLists lists = all_hits(world, Rays::of(rays), {.threads = threads});
+  std::vector<Ray> rays = rays_of_any_length(7, 6000);
+  std::vector<std::vector<Hit>> expected;
+  std::vector<std::vector<Crossing>> expected_crossings;
+  Random random(8);
+  for (Ray& ray : rays) {
+    if (const std::vector<Hit> all = all_hits(world, ray); !all.empty() && random.chance(.3))
+      ray.t_max = all[random.below(static_cast<std::uint32_t>(all.size()))].t;
+    expected.push_back(all_hits(world, ray));
+    expected_crossings.push_back(crossings(world, ray));
+  }
+  const auto expect_same = [&](const QueryOptions& options) {
+    const HitLists lists = all_hits(world, Rays::of(rays), options);
+    const CrossingLists crossed = crossings(world, Rays::of(rays), options);
     std::vector<std::uint32_t> counts(rays.size());
-    count_hits(world, Rays::of(rays), counts.data(), {.threads = threads});
+    std::vector<std::uint32_t> crossing_counts(rays.size());
+    count_hits(world, Rays::of(rays), counts.data(), options);
+    count_crossings(world, Rays::of(rays), crossing_counts.data(), options);
     ASSERT_EQ(lists.offset.size(), rays.size() + 1);
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      const std::vector<Hit> one = all_hits(world, rays[i]);
+      const std::vector<Hit>& one = expected[i];
       ASSERT_EQ(lists.of(i).size(), one.size());
       ASSERT_EQ(counts[i], one.size());
+      ASSERT_EQ(crossed.of(i).size(), expected_crossings[i].size());
+      ASSERT_EQ(crossing_counts[i], expected_crossings[i].size());
       for (std::size_t k = 0; k < one.size(); ++k) {
         EXPECT_EQ(lists.of(i)[k].id, one[k].id);
         EXPECT_EQ(lists.of(i)[k].t, one[k].t);
       }
+      for (std::size_t k = 0; k < crossed.of(i).size(); ++k) {
+        EXPECT_EQ(crossed.of(i)[k].id, expected_crossings[i][k].id);
+        EXPECT_EQ(crossed.of(i)[k].t, expected_crossings[i][k].t);
+      }
     }
-  }
+  };
+  expect_same({.threads = 3});
+  for (const Variant* variant : variants())
+    if (variant->is_supported())
+      expect_same({.isa = variant->name});
 }
 
 TEST(AllHits, StopWhenTheVisitorSaysSo) {

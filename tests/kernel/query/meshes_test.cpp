@@ -172,8 +172,7 @@ TEST(Meshes, ThatMoveWhileTheyAreHiddenAreBuiltAnew) {
   OwningWorld world(scene, {});
   show_mesh(scene, 0, false);
   world.replace(scene, {}, {});
-  for (Float3& v : meshes[0].vertices)
-    v = {-v.x, -v.y, v.z};
+  std::reverse(meshes[0].vertices.begin(), meshes[0].vertices.end());
   const Object moved = move_mesh(scene, 0, PointArray(std::span(meshes[0].vertices)));
   world.replace(scene, {}, {&moved, 1});
   show_mesh(scene, 0, true);
