@@ -96,6 +96,11 @@ inline void store(float* p, float a) {
 inline void store(double* p, double a) {
   *p = a;
 }
+/// Stores selected lanes.
+inline void store_selected(float* p, bool selected, float a) {
+  if (selected)
+    *p = a;
+}
 /// True if any lane is not 0.
 inline bool any_set(std::uint32_t a) {
   return a != 0;

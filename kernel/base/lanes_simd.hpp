@@ -160,6 +160,17 @@ inline void store(double* p, const VDouble& a) {
   a.store_unaligned(p);
 }
 
+/// Stores selected lanes.
+[[gnu::always_inline]] inline void store_selected(float* p,
+                                                  const xsimd::batch_bool<float, Arch>& m,
+                                                  const VFloat& a) {
+#if GRELHA_ISA_NUMBER == 4
+  _mm512_mask_storeu_ps(p, m, a);
+#else
+  store(p, select(m, a, VFloat::load_unaligned(p)));
+#endif
+}
+
 /// Of words that are 0 or all ones.
 inline xsimd::batch_bool<float, Arch> mask_of(const LaneWords& a) {
 #if GRELHA_ISA_NUMBER == 4

@@ -38,6 +38,14 @@ BlockExtent block_extent(const TriangleBlock& block, int a) {
 
 }  // namespace
 
+void set_bounds(const TriangleBlock& block, BlockBoxes& row, std::size_t at) {
+  for (int a = 0; a < 3; ++a) {
+    const BlockExtent r = block_extent(block, a);
+    row.side[a][at] = r.lo;
+    row.side[3 + a][at] = r.hi;
+  }
+}
+
 std::uint64_t write_boxes(std::size_t begin,
                           std::size_t end,
                           std::uint64_t row,

@@ -25,4 +25,7 @@ void bound_blocks(const Grid& grid,
                   std::uint32_t triangles,
                   ListStore<Triangle>& store);
 
+/// Sets box `at` of a row to the bounds of a block.
+void set_bounds(const TriangleBlock& block, BlockBoxes& row, std::size_t at);
+
 }  // namespace grelha

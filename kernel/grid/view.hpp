@@ -51,6 +51,7 @@ struct SceneView {
   GeometryView geometry;
   /// one "cell" of primitives that no grid holds: few, or as large as the scene
   CellLists outside;
+  BlockBoxes outside_boxes = {};  ///< bounds of its first blocks of triangles
   const GridView* grids = nullptr;
   int grid_count = 0;
   float box_lo[3] = {}, box_hi[3] = {};  ///< of all finite primitives

@@ -5,6 +5,7 @@
 
 #include "kernel/base/thread_pool.hpp"
 #include "kernel/shapes/duplicates.hpp"
+#include "kernel/grid/block_box.hpp"
 #include "kernel/grid/grid_fill.hpp"
 #include "kernel/grid/memory_estimate.hpp"
 #include "kernel/grid/plan.hpp"
@@ -118,6 +119,9 @@ void World::Impl::view_primitives() {
     arrays = primitives.of<Shape>().arrays();
   });
   view.outside = outside.lists();
+  if (const Triangle::CellList& list = view.outside.of<Triangle>(); list.first)
+    for (std::uint32_t b = 0; b < list.first[1] && b < kBlock; ++b)
+      set_bounds(list.blocks[b], view.outside_boxes, b);
   view_copies();
 }
 

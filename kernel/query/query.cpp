@@ -67,7 +67,7 @@ void closest(const World& world,
   expect_arrays(rays);
   expect_masks(world, options.mask);
   TraceCounts unread;
-  const ClosestLoop loop = choose_variant(options.isa).loops.closest;
+  const ClosestLoop loop = choose_variant(options.isa, rays.count).loops.closest;
   const TraceOptions how = options_of(options);
   const auto trace = [&](std::size_t first, std::size_t end, TraceCounts& to) {
     loop(world.impl().view, part_of(rays, first, end), part_of(hits, first), how, to);
@@ -100,7 +100,7 @@ void occluded(const World& world,
   if (!blocked && rays.count > 0)
     throw std::invalid_argument("occluded: expected an array of answers, found null");
   TraceCounts unread;
-  const OccludedLoop loop = choose_variant(options.isa).loops.occluded;
+  const OccludedLoop loop = choose_variant(options.isa, rays.count).loops.occluded;
   const TraceOptions how = options_of(options);
   const auto trace = [&](std::size_t first, std::size_t end, TraceCounts& to) {
     loop(world.impl().view, part_of(rays, first, end), blocked + first, how, to);

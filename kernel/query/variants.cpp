@@ -106,6 +106,28 @@ const Variant& best_variant() {
   return *best;
 }
 
+namespace {
+
+/// Rays of a stream that wider registers would leave half empty.
+constexpr int kFewRays = 8;
+
+const Variant& best_for_few() {
+  static const Variant* const best = [] {
+    const Variant* widest = nullptr;
+    for (const Variant* v : kVariants)
+      if (v->is_supported() && v->lanes <= kFewRays)
+        widest = v;
+    return widest ? widest : &best_variant();
+  }();
+  return *best;
+}
+
+}  // namespace
+
+const Variant& choose_variant(std::string_view name, std::size_t rays) {
+  return name == "best" && rays <= kFewRays ? best_for_few() : choose_variant(name);
+}
+
 const Variant* find_variant(std::string_view name) {
   if (name == "best")
     return &best_variant();

@@ -93,5 +93,7 @@ const Variant& best_variant();
 const Variant* find_variant(std::string_view name);
 /// The same; throws std::invalid_argument when it is not compiled, unknown or does not run here.
 const Variant& choose_variant(std::string_view name);
+/// The same for so many rays: the best for few is no wider than these.
+const Variant& choose_variant(std::string_view name, std::size_t rays);
 
 }  // namespace grelha

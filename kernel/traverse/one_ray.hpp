@@ -108,12 +108,37 @@ template <class Tests>
             id);
 }
 
+/// Bits of the blocks of triangles outside of grids whose boxes a ray does not surely pass by: see
+/// kOutsideSlack. Rays whose direction is not as given pass none surely.
+inline unsigned near_outside(const SceneView& scene, const Single& r) {
+  const float least = min_advance(*r.dir[0], *r.dir[1], *r.dir[2]);
+  bool known = *r.t_min >= 0;
+  for (int a = 0; a < 3; ++a)
+    known = known && magnitude(*r.dir[a]) >= least;
+  unsigned near = known ? 0 : ~0u;
+  for (int i = 0; known && i < kBlock; i += kWidth<Block>) {
+    Block enter(*r.t_min), leave(*r.best);
+    for (int a = 0; a < 3; ++a) {
+      const Block org(*r.org[a]), inverse(*r.inverse[a]);
+      const auto t_of_side = [&](int side) __attribute__((always_inline)) {
+        return (load<Block>(scene.outside_boxes.side[side] + i) - org) * inverse;
+      };
+      const int side = static_cast<int>(*r.near[a]);
+      clip_to_slab(t_of_side(side), t_of_side(2 * a + 3 - side), enter, leave);
+    }
+    near |= bits(enter <= leave * Block(kOutsideSlack) + Block(kOutsideUnderflow)) << i;
+  }
+  return near;
+}
+
 /// Takes one ray to the primitives that lie in no grid.
 template <class Tests>
-inline bool visit_outside(const CellLists& lists, Single& r, Tests& tests) {
+inline bool visit_outside(const SceneView& scene, Single& r, Tests& tests) {
+  const CellLists& lists = scene.outside;
   const Triangle::CellList& triangles = lists.of<Triangle>();
+  const unsigned near = triangles.first ? near_outside(scene, r) : 0;
   for (std::uint32_t i = 0; triangles.first && i < triangles.first[1]; ++i)
-    if (tests.block(r, triangles.blocks[i]))
+    if ((i >= kBlock || (near >> i & 1) != 0) && tests.block(r, triangles.blocks[i]))
       return true;
   return holds_arrays(lists) && tests.arrays(r, lists, 0);
 }
@@ -123,7 +148,7 @@ template <class Tests>
 inline void walk_scene(const SceneView& scene, Single& r, Tests& tests) {
   if (scene.outside.of<Sphere>().first)
     r.error_bound = error_bound_in(scene, take_vec<float>(r.org, 0));
-  if (visit_outside(scene.outside, r, tests))
+  if (visit_outside(scene, r, tests))
     return;
   each_grid<Tests::kInAnyOrder>(scene, r, [&](const GridView& g) {
     r.error_bound = g.error_bound;

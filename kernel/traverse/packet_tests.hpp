@@ -100,20 +100,18 @@ inline void record(Packet& p,
   const VFloat low = load<VFloat>(p.low + i);
   const Mask<VFloat> closer = mask_and(candidate, found.hi < low);
   const VFloat over(-kInfinity);
-  store(p.best + i, select(closer, kAny ? over : found.hi, best));
-  store(p.low + i, select(closer, kAny ? over : found.lo, low));
-  store(p.id + i, select(closer, VFloat(bits_of(id)), load<VFloat>(p.id + i)));
+  store_selected(p.best + i, closer, kAny ? over : found.hi);
+  store_selected(p.low + i, closer, kAny ? over : found.lo);
+  store_selected(p.id + i, closer, VFloat(bits_of(id)));
   if constexpr (!kAny && kKeepsFields<Shape>) {
     int row = 0;
     Shape::for_each_field(
         [&](const float& x) __attribute__((always_inline)) {
-          store(p.hit_field[row] + i,
-                select(closer, VFloat(x), load<VFloat>(p.hit_field[row] + i)));
+          store_selected(p.hit_field[row] + i, closer, VFloat(x));
           ++row;
         },
         met);
-    store(p.hit_field_id + i,
-          select(closer, VFloat(bits_of(id)), load<VFloat>(p.hit_field_id + i)));
+    store_selected(p.hit_field_id + i, closer, VFloat(bits_of(id)));
   }
   const unsigned other = bits_where(ids_at(p, i) != id);
   if (const unsigned ties = bits(and_not(candidate, closer)) & other; ties != 0)

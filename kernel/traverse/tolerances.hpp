@@ -33,6 +33,12 @@ inline constexpr float kPadOfBalls = .5f;
 /// the major axis, which is at most twice the farthest: 92 u.
 inline constexpr float kNearSlack = 6e-6f;
 
+/// Times the end of a way through a box, wherever the ray starts: t of its planes are off by 3 u of
+/// themselves each, 6 u of 16.8 u.
+inline constexpr float kOutsideSlack = 1.000001f;
+/// Added to the same: more than t of two planes lose to underflow, 2^-149 each.
+inline constexpr float kOutsideUnderflow = 0x1p-140f;
+
 /// Times the length of a plane's gradient, which is off by 2.5 u.
 inline constexpr float kGradientTolerance = 1.00001f;
 

@@ -18,21 +18,54 @@ inline void test_infinite(const SceneView& scene, Packet& p, TraceCounts& n) {
   });
 }
 
+/// Groups with a ray that does not surely pass by a block of triangles outside of grids; see
+/// near_outside().
+inline std::uint64_t groups_near_outside(const Packet& p, const BlockBoxes& boxes, int k) {
+  std::uint64_t in = 0;
+  each_live_group(
+      p, [&](int i, int g) __attribute__((always_inline)) {
+        const VFloat least = min_advance(p, i);
+        VFloat enter = load<VFloat>(p.t_min + i);
+        VFloat leave = load<VFloat>(p.best + i);
+        Mask<VFloat> unknown = enter < VFloat(0);
+        for (int a = 0; a < 3; ++a) {
+          const VFloat d = load<VFloat>(p.dir[a] + i);
+          unknown = mask_or(unknown, magnitude(d) < least);
+          clip_to_slab(VFloat(boxes.side[a][k]),
+                       VFloat(boxes.side[a + 3][k]),
+                       load<VFloat>(p.org[a] + i),
+                       VFloat(1) / d,
+                       enter,
+                       leave);
+        }
+        in |= std::uint64_t{any(mask_or(
+                  unknown, enter <= leave * VFloat(kOutsideSlack) + VFloat(kOutsideUnderflow)))}
+              << g;
+      });
+  return in;
+}
+
 /// Tests the triangles that lie in no grid.
 template <bool kAny>
-inline void test_outside(const Triangle::CellList& list, Packet& p, TraceCounts& n) {
+inline void test_outside(const SceneView& scene, Packet& p, TraceCounts& n) {
+  const Triangle::CellList& list = scene.outside.of<Triangle>();
+  const std::uint64_t live = p.live;
   for (std::uint32_t b = 0; b < list.first[1]; ++b) {
     const TriangleBlock& block = list.blocks[b];
-    for (int i = 0; i < kBlock && block.a[0][i] == block.a[0][i]; ++i)
+    if (p.groups > 1 && b < kBlock)
+      p.live = live & groups_near_outside(p, scene.outside_boxes, static_cast<int>(b));
+    for (int i = 0; p.live != 0 && i < kBlock && block.a[0][i] == block.a[0][i]; ++i)
       test_triangle<kAny>(p, triangle_of(block, i), block.id[i], n);
+    p.live = live;
   }
 }
 
 /// The few primitives that lie in no grid, each against all rays.
 template <bool kAny>
-inline void test_outside(const CellLists& lists, Packet& p, TraceCounts& n) {
+inline void test_all_outside(const SceneView& scene, Packet& p, TraceCounts& n) {
+  const CellLists& lists = scene.outside;
   if (lists.of<Triangle>().first)
-    test_outside<kAny>(lists.of<Triangle>(), p, n);
+    test_outside<kAny>(scene, p, n);
   ArrayShapes::for_each([&]<class Shape>() __attribute__((always_inline)) {
     const typename Shape::CellList& list = lists.of<Shape>();
     for (std::uint32_t i = 0; list.first && i < list.first[1]; ++i)
@@ -137,7 +170,7 @@ template <bool kAny>
   test_infinite<kAny>(scene, p, n);
   if (scene.outside.of<Sphere>().first)
     p.error_bound = error_bound_of(scene, p);
-  test_outside<kAny>(scene.outside, p, n);
+  test_all_outside<kAny>(scene, p, n);
   each_grid<kAny>(scene, p, [&](const GridView& g) { search_grid<kAny>(g, p, options, n); });
 }
 

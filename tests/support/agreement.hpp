@@ -275,6 +275,8 @@ inline std::vector<std::pair<const char*, Scene>> agreement_meshes() {
   all.emplace_back("sheets", stacked_sheets(300));
   all.emplace_back("slivers", slivers(5, 200));
   all.emplace_back("cube at 0", cube_at_zero(4));
+  all.emplace_back("cube of 12, in no grid", cube_at_zero(1));
+  all.emplace_back("seven triangles, in no grid", random_triangles(6, 7));
   return all;
 }
 
