@@ -47,6 +47,20 @@ CrossingSpan span_of(const ExactRay& ray, const One<Shape>& primitive, double sh
   });
 }
 
+/// True if both are triangles that a ray crosses at a vertex or an edge that both have.
+bool cross_together(const GeometryView& g,
+                    const ExactRay& ray,
+                    std::uint32_t id,
+                    std::uint32_t other,
+                    ExactCrossing& at) {
+  const std::uint32_t first = g.ids.begin(PrimitiveKind::kTriangle);
+  if (!g.ids.has(PrimitiveKind::kTriangle, id) || !g.ids.has(PrimitiveKind::kTriangle, other))
+    return false;
+  const One<Triangle> a = g.of<Triangle>().triangle(id - first);
+  const One<Triangle> b = g.of<Triangle>().triangle(other - first);
+  return cross_together(ray, a.corner, b.corner, at);
+}
+
 }  // namespace
 
 CrossingBounds crossing_bounds(const GeometryView& g, const ExactRay& ray, std::uint32_t id) {
@@ -84,6 +98,10 @@ bool is_closest(const GeometryView& g,
                 std::uint32_t other,
                 double shift,
                 CrossingSpan& first) {
+  if (ExactCrossing at; cross_together(g, ray, id, other, at)) {
+    first = scalar::span_of(at, shift);
+    return id < other;
+  }
   const scalar::HitInterval<double> a = double_interval(g, ray, id);
   const scalar::HitInterval<double> b = double_interval(g, ray, other);
   if (a.sure && b.sure && (a.hi < b.lo || b.hi < a.lo)) {
