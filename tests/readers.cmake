@@ -15,7 +15,8 @@ target_sources(nff_reader_test PRIVATE frontend/nff/nff_dialects_test.cpp
   frontend/nff/nff_noise_test.cpp)
 grelha_test(frontend/ply/ply_reader unit grelha::frontend)
 target_sources(ply_reader_test PRIVATE frontend/ply/ply_alone_test.cpp
-  frontend/ply/ply_colors_test.cpp frontend/ply/stl_reader_test.cpp
+  frontend/ply/ply_colors_test.cpp frontend/ply/stl_dialects_test.cpp
+  frontend/ply/stl_reader_test.cpp
   frontend/scene/smooth_normals_test.cpp frontend/ply/ply_triangles_test.cpp)
 grelha_test(frontend/input/default_view unit grelha::frontend)
 target_sources(default_view_test PRIVATE frontend/input/view_test.cpp)

@@ -19,6 +19,7 @@
 #include "frontend/files/shown.hpp"
 #include "frontend/files/unfinished.hpp"
 #include "frontend/images/image_file.hpp"
+#include "frontend/jobs/kept.hpp"
 #include "frontend/jobs/merge.hpp"
 #include "frontend/jobs/preparation.hpp"
 #include "frontend/jobs/ranks.hpp"
@@ -88,9 +89,8 @@ int worse(int a, int b) {
 }
 
 void remove_checkpoint(const RenderCommand& command) {
-  std::error_code ignored;
   if (command.work.save_until_end && !command.work.checkpoint.empty())
-    std::filesystem::remove(command.work.checkpoint, ignored);
+    remove_kept(command.work.checkpoint);
 }
 
 /// Renders every scene, even if another one fails. Stops after a signal, or when one of several

@@ -45,7 +45,9 @@ void warn_empty_scene(const std::string& path, const SceneFile& file, const Warn
          (file.points == 1 ? " point has" : " points have") +
          " no faces and will not be drawn: --points auto draws them as balls");
   else if (is_empty(scene.geometry))
-    warn(path + ": warning: nothing to draw: add an object, such as \"s 0 0 0 1\"");
+    warn(path + ": warning: nothing to draw: " +
+         (file.default_camera ? "the mesh has no triangle"
+                              : "add an object, such as \"s 0 0 0 1\""));
   if (!is_empty(scene.geometry) && !is_lit(scene))
     warn(path + ": warning: no light: surfaces will show no color of their own");
 }

@@ -75,6 +75,10 @@ void list_entities(std::string& text, const EntityCounts& c) {
   text += "in the file   " + (line.empty() ? "no primitives" : line) + '\n';
 }
 
+bool has_mesh(const EntityCounts& counts) {
+  return counts.ply + counts.mesh > 0;
+}
+
 const char* box_order_name(BoxOrder order) {
   return order == BoxOrder::kPairs ? "pairs" : "corners";
 }
@@ -301,7 +305,7 @@ std::string info_json(const SceneFile& file,
   json["frame"] = {{"offset", file.frame.offset}, {"scale", file.frame.scale}};
   json["memory"] = {{"scene", memory.scene}, {"grids", memory.grids}, {"peak", memory.peak}};
   json["grids"] = grids ? to_json(*grids) : nullptr;
-  json["mesh"] = grids && file.counts.ply > 0 ? mesh_json(file) : nullptr;
+  json["mesh"] = grids && has_mesh(file.counts) ? mesh_json(file) : nullptr;
   for (const auto& [name, needed] : needs_of(file))
     json["needs"][name] = needed;
   const Camera& camera = file.camera;
@@ -346,7 +350,7 @@ std::string info_text(const std::string& path,
     text += "grid          not built: it would take more than " + available_memory() + '\n';
   for (const GridStats& grid : grids.value_or(std::vector<GridStats>{}))
     text += grid_text(grid);
-  if (grids && file.counts.ply > 0)
+  if (grids && has_mesh(file.counts))
     text += mesh_text(file);
   return text + needs_text(file);
 }

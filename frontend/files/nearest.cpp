@@ -4,6 +4,8 @@
 #include <numeric>
 #include <vector>
 
+#include "frontend/files/text.hpp"
+
 namespace grelha {
 
 // Optimal string alignment: Wagner & Fischer's table by rows, with the row before the last one kept
@@ -25,13 +27,6 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }
 
 namespace {
-
-std::string in_small_letters(std::string_view word) {
-  std::string small(word);
-  for (char& c : small)
-    c = c >= 'A' && c <= 'Z' ? char(c + 32) : c;
-  return small;
-}
 
 /// Returns the first word that begins with `found`, where that has letters enough to mean one.
 std::string_view completed(std::string_view found, std::span<const std::string_view> words) {

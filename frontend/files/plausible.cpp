@@ -16,14 +16,21 @@ bool has_digit(std::string_view text) {
 
 }  // namespace
 
-void validate_start(const std::string& path, bool ply, std::string_view text, std::size_t fresh) {
-  const std::string_view start = text.substr(0, kStart);
-  if (start.starts_with("version https://git-lfs"))
+void refuse_other_format(const std::string& path,
+                         std::string_view expected,
+                         std::string_view text) {
+  if (text.starts_with("version https://git-lfs"))
     throw ParseError(
         Position{path, 1, 1, 0},
         "expected a scene, found a Git LFS pointer: the file it stands for was not downloaded");
-  if (const std::string_view name = fresh == 0 ? other_format(text) : ""; !name.empty())
-    throw ParseError(Position{path, 1, 1, 0}, ply ? "PLY" : "NFF or PLY", name);
+  if (const std::string_view name = other_format(text); !name.empty())
+    throw ParseError(Position{path, 1, 1, 0}, expected, name);
+}
+
+void validate_start(const std::string& path, bool ply, std::string_view text, std::size_t fresh) {
+  const std::string_view start = text.substr(0, kStart);
+  if (fresh == 0)
+    refuse_other_format(path, ply ? "PLY" : "NFF, PLY or STL", text);
   if (ply && fresh == 0) {
     Words words(path, start, byte_order_mark(start), Comments::kNone);
     const std::string_view magic = words.next();

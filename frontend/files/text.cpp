@@ -112,6 +112,13 @@ std::size_t byte_order_mark(std::string_view text) {
   return text.starts_with(kMark) ? kMark.size() : 0;
 }
 
+std::string in_small_letters(std::string_view word) {
+  std::string small(word);
+  for (char& c : small)
+    c = c >= 'A' && c <= 'Z' ? char(c + 32) : c;
+  return small;
+}
+
 constexpr std::size_t kLongestPrinted = 40;
 
 constexpr auto is_not_ascii = [](char c) { return c < ' ' || c > '~'; };

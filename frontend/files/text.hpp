@@ -25,6 +25,9 @@ bool looks_like_number(std::string_view word);
 /// Bytes of the mark that some editors put before UTF-8: 3, or 0 when the text has none.
 std::size_t byte_order_mark(std::string_view text);
 
+/// The word with ASCII's capital letters made small.
+std::string in_small_letters(std::string_view word);
+
 /// Shortens a word, and replaces unprintable bytes.
 std::string printable(std::string_view word);
 

@@ -8,44 +8,16 @@
 
 #include "frontend/files/load_progress.hpp"
 #include "frontend/files/memory_limit.hpp"
-#include "frontend/files/plausible.hpp"
 #include "frontend/files/load_file.hpp"
-#include "frontend/files/text.hpp"
 #include "frontend/input/default_view.hpp"
 #include "frontend/nff/nff_reader.hpp"
-#include "frontend/ply/ply_reader.hpp"
-#include "frontend/ply/stl_reader.hpp"
+#include "frontend/ply/mesh_file.hpp"
 #include "frontend/scene/choose_frame.hpp"
 #include "frontend/scene/scene_builder.hpp"
 #include "frontend/scene/warnings.hpp"
 
 namespace grelha {
 namespace {
-
-/// Extension in small letters, without a ".gz" behind it.
-std::string extension(const std::string& path) {
-  std::string name = path.substr(path.find_last_of('/') + 1);
-  std::transform(name.begin(), name.end(), name.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? char(c + 32) : c;
-  });
-  if (name.ends_with(".gz"))
-    name.resize(name.size() - 3);
-  const std::size_t point = name.find_last_of('.');
-  return point == std::string::npos ? "" : name.substr(point);
-}
-
-/// Returns true for the extension .ply, or for a file that begins with `ply` alone: NFF's `ply` has
-/// a name behind it.
-bool is_ply(const std::string& path, std::string_view bytes) {
-  if (extension(path) == ".ply")
-    return true;
-  bytes.remove_prefix(byte_order_mark(bytes));
-  return bytes.starts_with("ply\n") || bytes.starts_with("ply\r");
-}
-
-bool is_stl(const std::string& path) {
-  return extension(path) == ".stl";
-}
 
 SceneFile read_mesh_only(const std::string& path,
                          std::string bytes,
@@ -55,10 +27,8 @@ SceneFile read_mesh_only(const std::string& path,
   SceneFile file;
   file.frame = options.frame;
   file.source_bytes = bytes.size();
-  const bool stl = !is_ply(path, bytes);
-  Mesh mesh =
-      stl ? read_stl_mesh(path, bytes, warn, &progress, options.frame)
-          : read_ply_mesh(path, bytes, warn, &progress, options.frame, options.meshes.colors);
+  const bool stl = mesh_format(path, bytes) == MeshFormat::kStl;
+  Mesh mesh = read_mesh(path, bytes, warn, &progress, options.frame, options.meshes.colors);
   std::string().swap(bytes);  // they are as large as the mesh
   (stl ? file.counts.mesh : file.counts.ply) = mesh.face_count();
   if (mesh.face_count() == 0 && !options.meshes.point_radius)
@@ -84,8 +54,7 @@ void warn_of_dropped(const std::string& path, const Dropped& dropped, const Warn
 std::string load_scene(const std::string& path, LoadProgress& progress) {
   std::string bytes =
       load_file(path, &progress, true, [&](std::string_view text, std::size_t fresh) {
-        if (!is_stl(path))
-          validate_start(path, is_ply(path, text), text, fresh);
+        validate_mesh_or_scene(path, text, fresh);
       });
   if (bytes.empty())
     throw ParseError(Position{path, 1, 1, 0}, "expected a scene, found an empty file");
@@ -97,7 +66,7 @@ SceneFile parse_scene(const std::string& path,
                       const Warn& warn,
                       const ReadOptions& options,
                       LoadProgress& progress) {
-  return is_ply(path, bytes) || is_stl(path)
+  return mesh_format(path, bytes) != MeshFormat::kNone
              ? read_mesh_only(path, std::move(bytes), warn, options, progress)
              : read_nff(path, bytes, warn, options, &progress);
 }

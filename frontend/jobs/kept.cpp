@@ -27,7 +27,18 @@ bool path_exists(const fs::path& path) {
   return fs::exists(fs::symlink_status(path, ignored));
 }
 
+constexpr std::string_view kFreshFolder = "grelha-XXXXXX";  // X: any letter or digit
+
 }  // namespace
+
+void remove_kept(const std::string& work) {
+  std::error_code none;
+  fs::remove(work, none);
+  const fs::path folder = fs::absolute(work, none).parent_path();
+  const std::string name = folder.filename().string();
+  if (name.size() == kFreshFolder.size() && name.starts_with(kFreshFolder.substr(0, 7)))
+    fs::remove(folder, none);  // where it is empty
+}
 
 SavedNames saved_names(const RenderCommand& command,
                        const std::function<bool(const std::string&)>& fits) {
@@ -50,7 +61,7 @@ std::string write_fallback(const std::string& work,
   std::error_code none;
   const fs::path own = fs::absolute(work, none).parent_path(), name = fs::path(work).filename();
   // a new folder, into which no other user can have put a file
-  std::string fresh = (fs::temp_directory_path(none) / "grelha-XXXXXX").string();
+  std::string fresh = (fs::temp_directory_path(none) / kFreshFolder).string();
   const bool is_fresh = mkdtemp(fresh.data()) != nullptr;
   for (const fs::path& folder : {fs::path(is_fresh ? fresh : ""), fs::current_path(none)}) {
     const fs::path target = folder / name;

@@ -26,4 +26,7 @@ SavedNames saved_names(const RenderCommand& command,
 std::string write_fallback(const std::string& work,
                            const std::function<void(const std::string&)>& write);
 
+/// Removes a file of saved work, and the folder that write_fallback() made for it.
+void remove_kept(const std::string& work);
+
 }  // namespace grelha

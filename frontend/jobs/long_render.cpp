@@ -261,7 +261,7 @@ void LongRender::finish(Layers layers) {
   if (command_.work.save_until_end && save_requested())
     return save();
   if (saved_location_ && saved_location_ == location_of(saved_.work))
-    unlink(saved_.work.c_str());
+    remove_kept(saved_.work);
   if (continued_)
     unlink(saved_.picture.c_str());
 }

@@ -7,7 +7,7 @@
 #include "frontend/files/load_file.hpp"
 #include "frontend/files/memory_limit.hpp"
 #include "frontend/files/plausible.hpp"
-#include "frontend/ply/ply_reader.hpp"
+#include "frontend/ply/mesh_file.hpp"
 
 namespace grelha {
 namespace {
@@ -86,10 +86,11 @@ Mesh NffMeshFiles::read(const NffInput& input,
                         SceneFile& scene) const {
   try {
     const auto validate = [&](std::string_view text, std::size_t fresh) {
-      validate_start(path, true, text, fresh);
+      if (mesh_format(path, text) != MeshFormat::kStl)
+        validate_start(path, true, text, fresh);
     };
     const std::string bytes = load_file(path, load_, false, validate);
-    Mesh mesh = read_ply_mesh(path, bytes, warn_, load_, scene.frame, colors_);
+    Mesh mesh = read_mesh(path, bytes, warn_, load_, scene.frame, colors_);
     const std::uint64_t held = input.words.size() + bytes.size();
     scene.source_bytes = std::max(scene.source_bytes, held);
     check_image_size(input, name, mesh, scene.scene.geometry.triangles);

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "frontend/ply/ply_colors.hpp"
 #include "frontend/ply/ply_header.hpp"
 #include "frontend/scene/frame.hpp"
 #include "frontend/scene/mesh.hpp"
@@ -61,11 +62,8 @@ struct PlyPlan {
   int columns[kColumns] = {-1, -1, -1, -1, -1, -1, -1, -1, -1};
   int list = -1;  ///< the indices of `face` or `tristrips`
   Frame frame{};  ///< of x y z
-  PlyType color_type{};
+  bool colors_are_bytes = false;
 };
-
-/// The light of a byte of sRGB, or of a number that rounds to one.
-float light_of_byte(double byte);
 
 /// The array that receives the numbers of a property, and their transformation.
 struct PlyColumn {
@@ -83,10 +81,7 @@ inline PlyColumn column(Mesh& mesh, const PlyPlan& plan, int i) {
   std::vector<float>* const all[] = {
       &mesh.x, &mesh.y, &mesh.z, &mesh.nx, &mesh.ny, &mesh.nz, &mesh.red, &mesh.green, &mesh.blue};
   if (i >= 6)
-    return {all[i],
-            0,
-            plan.color_type == PlyType::kUint16 ? 1. / 65535 : 1,
-            plan.color_type == PlyType::kUint8};
+    return {all[i], 0, 1, plan.colors_are_bytes};
   if (i >= 3)
     return {all[i]};
   return {all[i], plan.frame.offset[std::size_t(i)], plan.frame.scale};

@@ -1,12 +1,11 @@
 #include "frontend/ply/ply_reader.hpp"
 
 #include <algorithm>
-#include <array>
-#include <optional>
 
-#include "frontend/images/tone.hpp"
+#include "frontend/files/text.hpp"
 #include "frontend/ply/ply_ascii.hpp"
 #include "frontend/ply/ply_binary.hpp"
+#include "frontend/ply/ply_colors.hpp"
 
 namespace grelha {
 namespace {
@@ -37,62 +36,6 @@ PlyPlan plan_vertex(const PlyElement& element, const Frame& frame) {
   return plan;
 }
 
-struct PlyColors {
-  const PlyElement* element = nullptr;  ///< that has them, or null
-  std::array<int, 3> columns{};
-  PlyType type{};
-};
-
-/// Finds three numbers of an element, of one type.
-std::optional<PlyColors> colors_in(const PlyElement& element,
-                                   const std::array<std::string_view, 3>& names) {
-  PlyColors found{&element, {}, {}};
-  for (std::size_t i = 0; i < 3; ++i) {
-    found.columns[i] = find_property(element, names[i]);
-    if (found.columns[i] < 0)
-      return {};
-    const PlyProperty& property = element.properties[std::size_t(found.columns[i])];
-    if (property.is_list || (i > 0 && property.type != found.type))
-      return {};
-    found.type = property.type;
-  }
-  return found;
-}
-
-/// Finds the colours of vertices, or else of faces.
-PlyColors find_colors(const PlyHeader& header, WarningList& warning_list) {
-  for (const std::string_view name : {"vertex", "face"})
-    for (const PlyElement& element : header.elements)
-      for (const auto& names : {std::array<std::string_view, 3>{"red", "green", "blue"},
-                                {"diffuse_red", "diffuse_green", "diffuse_blue"}}) {
-        if (element.name != name || element.count == 0)
-          continue;
-        const auto found = colors_in(element, names);
-        if (found && (found->type == PlyType::kUint8 || found->type == PlyType::kUint16 ||
-                      found->type >= PlyType::kFloat32))
-          return *found;
-        if (found)
-          warning_list.add_line(element.position,
-                                "colours are left out: expected them as uchar, ushort or float");
-      }
-  return {};
-}
-
-/// Cuts colours to what surfaces reflect.
-void cut_colors(Mesh& mesh, const PlyColors& colors, WarningList& warning_list) {
-  std::size_t cut = 0;
-  for (std::vector<float>* const channel : {&mesh.red, &mesh.green, &mesh.blue})
-    for (float& c : *channel)
-      if (!(c >= 0 && c <= 1)) {
-        c = c > 1 ? 1 : 0;
-        ++cut;
-      }
-  if (cut > 0)
-    warning_list.add_line(
-        colors.element->position,
-        std::to_string(cut) + " numbers of colours are cut: expected them from 0 to 1");
-}
-
 PlyPlan plan_faces(const PlyElement& element) {
   PlyPlan plan;
   plan.list = find_property(element, "vertex_indices");
@@ -107,6 +50,18 @@ PlyPlan plan_faces(const PlyElement& element) {
         element.position,
         "expected a list of integers \"vertex_indices\" in \"" + element.name + "\", found none");
   return PlyPlan{};
+}
+
+/// Gives an element that some programs call otherwise its name, unless another one has it.
+void use_common_name(std::string_view name, std::string_view plural, PlyHeader& header) {
+  if (std::ranges::find(header.elements, name, &PlyElement::name) != header.elements.end())
+    return;
+  for (PlyElement& element : header.elements)
+    if (const std::string small = in_small_letters(element.name);
+        small == name || small == plural) {
+      element.name = name;
+      return;
+    }
 }
 
 /// Corners of as many triangles as there are rows, if the file can hold them: most meshes are of
@@ -143,7 +98,7 @@ Mesh read_rows(const PlyHeader& header,
       plan = plan_faces(element);
     if (&element == colors.element) {
       std::ranges::copy(colors.columns, plan.columns + 6);
-      plan.color_type = colors.type;
+      plan.colors_are_bytes = colors.is_bytes();
       mesh.colors_of_faces = element.name == "face";
       mesh.has_alpha = find_property(element, "alpha") >= 0;
     }
@@ -159,16 +114,6 @@ Mesh read_rows(const PlyHeader& header,
 
 }  // namespace
 
-float light_of_byte(double byte) {
-  static const auto light = [] {
-    std::array<float, 256> all{};
-    for (std::size_t i = 0; i < all.size(); ++i)
-      all[i] = float(light_of_srgb(double(i) / 255));
-    return all;
-  }();
-  return light[std::size_t(byte >= 0 ? std::min(byte + .5, 255.) : 0)];
-}
-
 Mesh read_ply_mesh(const std::string& path,
                    std::string_view bytes,
                    const Warn& warn,
@@ -176,12 +121,14 @@ Mesh read_ply_mesh(const std::string& path,
                    const Frame& frame,
                    bool with_colors) {
   WarningList warning_list(warn);
-  const PlyHeader header = read_ply_header(path, bytes, warning_list, progress);
-  const PlyColors colors = with_colors ? find_colors(header, warning_list) : PlyColors{};
+  PlyHeader header = read_ply_header(path, bytes, warning_list, progress);
+  use_common_name("vertex", "vertices", header);
+  use_common_name("face", "faces", header);
+  const PlyColors colors = with_colors ? find_colors(header) : PlyColors{};
   const auto read = [&](auto rows) { return read_rows(header, colors, bytes.size(), frame, rows); };
   Mesh mesh = header.format == PlyFormat::kAscii ? read(PlyAscii(path, bytes, header, progress))
                                                  : read(PlyBinary(path, bytes, header, progress));
-  cut_colors(mesh, colors, warning_list);
+  scale_colors(mesh, colors, warning_list);
   return mesh;
 }
 

@@ -1,105 +1,41 @@
 #include "frontend/ply/stl_reader.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
-#include <cstring>
 #include <numeric>
 #include <tuple>
 #include <vector>
 
 #include "frontend/files/load_progress.hpp"
-#include "frontend/files/text.hpp"
+#include "frontend/files/plausible.hpp"
+#include "frontend/ply/stl_binary.hpp"
+#include "frontend/ply/stl_text.hpp"
 
 namespace grelha {
 namespace {
 
-constexpr std::size_t kHeader = 80;  // bytes, and four for the number of triangles
-constexpr std::size_t kTriangle = 50;
+constexpr std::size_t kHeader = 80, kFirstTriangle = 54;  // bytes, with the count before it
 
-std::uint32_t word_at(const char* p) {
-  std::uint32_t word = 0;
-  std::memcpy(&word, p, sizeof word);
-  if constexpr (std::endian::native == std::endian::big)
-    word = word << 24 | (word & 0xFF00) << 8 | (word >> 8 & 0xFF00) | word >> 24;
-  return word;
+/// Bytes that no text has, in no encoding that is read.
+bool is_control(char c) {
+  const auto byte = static_cast<unsigned char>(c);
+  return byte < ' ' && !(byte >= '\t' && byte <= '\r') && byte != 0x1A;  // DOS ends a text by that
 }
 
-/// The bytes of a binary file of as many triangles as this one says it has.
-std::uint64_t binary_size(std::string_view bytes) {
-  return bytes.size() < kHeader + 4
-             ? kHeader + 4
-             : kHeader + 4 + kTriangle * std::uint64_t{word_at(bytes.data() + kHeader)};
+/// What follows a header of 80 bytes shows control characters where it is binary: the first byte or
+/// the last of a count, and numbers. Text may have some by accident, but then its vertices tell.
+bool is_text(std::string_view bytes) {
+  const std::string_view shown =
+      bytes.size() > kHeader + 4 ? bytes.substr(kHeader, kFirstTriangle) : bytes;
+  return std::ranges::none_of(shown, is_control) || has_stl_vertex(bytes);
 }
 
-void add_corner(Mesh& mesh, const Float3& p) {
-  mesh.x.push_back(p.x);
-  mesh.y.push_back(p.y);
-  mesh.z.push_back(p.z);
-}
-
-void read_binary(const std::string& path,
-                 std::string_view bytes,
-                 ParseProgress& progress,
-                 const Frame& frame,
-                 Mesh& mesh) {
-  if (bytes.size() < binary_size(bytes))
-    throw ParseError(
-        Position{path, 0, 0, bytes.size()},
-        "\"solid\" in text, or " + std::to_string(binary_size(bytes)) + " bytes of triangles",
-        "end of file");
-  const char* const end = bytes.data() + binary_size(bytes);
-  for (const char* p = bytes.data() + kHeader + 4; p < end; p += kTriangle) {
-    for (int corner = 0; corner < 3; ++corner) {
-      const auto number = [&](int axis) {
-        return double{std::bit_cast<float>(word_at(p + 12 + 12 * corner + 4 * axis))};
-      };
-      add_corner(mesh, frame.inside({number(0), number(1), number(2)}));
-    }
-    progress.at(p);
-  }
-}
-
-std::string lower(std::string_view word) {
-  std::string small(word.substr(0, 16));
-  std::ranges::transform(
-      small, small.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
-  return small;
-}
-
-Float3 read_vertex(Words& words, const Frame& frame) {
-  std::array<double, 3> p{};
-  for (double& coordinate : p) {
-    const std::string_view word = words.next();
-    if (!to_number(word, coordinate))
-      throw ParseError(words.position(word), "a number of the vertex", quoted(word));
-  }
-  return frame.inside(p);
-}
-
-/// Lines `solid`, `facet`, `outer loop`, `vertex x y z`, and the ends of these. Returns whether the
-/// last of them is the end of a solid.
-bool read_text(Words& words, ParseProgress& progress, const Frame& frame, Mesh& mesh) {
-  bool ended = false;
-  for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
-    const std::string name = lower(word);
-    ended = name == "endsolid";
-    if (name == "vertex") {
-      add_corner(mesh, read_vertex(words, frame));
-    } else if (name == "endloop") {
-      if (mesh.x.size() % 3 != 0 || mesh.x.size() == mesh.indices.size())
-        throw ParseError(words.position(word), "three vertices before \"endloop\"", quoted(word));
-      mesh.indices.resize(mesh.x.size());
-    } else if (ended || name == "solid" || name == "facet" || name == "outer") {
-      words.skip_line();  // with a name, or a normal that follows from the vertices
-    } else if (name != "endfacet") {
-      throw ParseError(words.position(word), "\"facet\", \"vertex\" or \"endsolid\"", quoted(word));
-    }
-    progress.at(words.cursor());
-  }
-  if (mesh.x.size() != mesh.indices.size())
-    throw ParseError(words.position({}), "\"endloop\" behind three vertices", "end of file");
-  return ended;
+/// Bytes that are no text, of which text holds few even where it is damaged.
+bool is_far_from_text(std::string_view bytes) {
+  constexpr std::ptrdiff_t kLeast = 10;
+  const auto other = [](char c) { return is_control(c) || static_cast<signed char>(c) < 0; };
+  return bytes.size() >= kHeader + kFirstTriangle &&
+         std::ranges::count_if(bytes.substr(kHeader, kFirstTriangle), other) >= kLeast;
 }
 
 /// Joins corners with the same coordinates, which are all that tells which triangles touch.
@@ -133,7 +69,38 @@ void join_corners(Mesh& mesh) {
     of->resize(vertices);
 }
 
+[[noreturn]] void refuse_binary(const std::string& path, std::string_view bytes) {
+  refuse_other_format(path, "STL", bytes);
+  const std::uint64_t promised = promised_stl_triangles(bytes), whole = most_stl_triangles(bytes);
+  const std::string held = std::to_string(bytes.size()) + " bytes";
+  if (bytes.size() < kHeader + 4)
+    throw ParseError(Position{path, 0, 0, bytes.size()},
+                     "\"solid\" in text, or 84 bytes before the first triangle",
+                     held);
+  throw ParseError(Position{path, 0, 0, bytes.size()},
+                   std::to_string(promised) + (promised == 1 ? " triangle" : " triangles"),
+                   std::to_string(whole) + " in " + held + ", and then the end of the file");
+}
+
+/// Of a file whose size is not that of its triangles.
+StlLayout loose_layout(const std::string& path, std::string_view bytes, const Warn& warn) {
+  const auto found = loose_stl_layout(bytes);
+  if (!found)
+    refuse_binary(path, bytes);
+  if (const std::uint64_t more = bytes.size() - found->end; more >= kFirstTriangle && warn)
+    warn(path + ": warning: " + std::to_string(more) + " bytes follow the last of " +
+         std::to_string(found->triangles) + " triangles; they are skipped");
+  return *found;
+}
+
 }  // namespace
+
+bool is_stl(std::string_view bytes) {
+  const auto layout = exact_stl_layout(bytes);
+  if (layout && layout->triangles > 0)
+    return true;
+  return is_far_from_text(bytes) ? has_plausible_triangle(bytes) : begins_stl_text(bytes);
+}
 
 Mesh read_stl_mesh(const std::string& path,
                    std::string_view bytes,
@@ -142,15 +109,11 @@ Mesh read_stl_mesh(const std::string& path,
                    const Frame& frame) {
   Mesh mesh;
   ParseProgress parsed(progress, bytes.data());
-  const std::size_t mark = byte_order_mark(bytes);
-  // many binary files begin with the word as well
-  if (lower(bytes.substr(mark, 5)) == "solid" && bytes.size() != binary_size(bytes)) {
-    Words words(path, bytes, mark, Comments::kNone);
-    if (!read_text(words, parsed, frame, mesh) && warn)
-      warn(path + ": warning: the file ends without \"endsolid\"");
-  } else {
-    read_binary(path, bytes, parsed, frame, mesh);
-  }
+  const auto exact = exact_stl_layout(bytes);
+  if (!exact && is_text(bytes))
+    StlText(path, bytes, warn, parsed, frame, mesh).read();
+  else
+    read_stl_binary(bytes, exact ? *exact : loose_layout(path, bytes, warn), parsed, frame, mesh);
   join_corners(mesh);
   return mesh;
 }

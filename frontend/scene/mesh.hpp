@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "grelha/geometry.hpp"
+
 namespace grelha {
 
 /// Faces over shared vertices as a file gives them, indices already checked.
@@ -16,6 +18,11 @@ struct Mesh {
   std::vector<std::uint32_t> sizes;    ///< [faces] corners of each, or empty: all are triangles
   std::size_t vertex_count() const { return x.size(); }
   std::size_t face_count() const { return sizes.empty() ? indices.size() / 3 : sizes.size(); }
+  void add_vertex(const Float3& p) {
+    x.push_back(p.x);
+    y.push_back(p.y);
+    z.push_back(p.z);
+  }
   /// Ends the face whose `size` corners were just appended.
   void close_face(std::uint32_t size) {
     if (sizes.empty() && size != 3)

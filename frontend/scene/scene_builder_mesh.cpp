@@ -1,10 +1,10 @@
 // Meshes in a scene, as SceneBuilder puts them there.
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
 #include <utility>
 
+#include "frontend/scene/point_spacing.hpp"
 #include "frontend/scene/scene_builder.hpp"
 #include "frontend/scene/smooth_normals.hpp"
 
@@ -51,16 +51,14 @@ void SceneBuilder::append_vertices(Mesh& mesh) {
   append(t.z, mesh.z);
 }
 
+/// Keeps triangles without area: they join what lies along a longer side, and number the faces.
 SceneBuilder::Result SceneBuilder::mesh_face(std::span<const std::uint32_t> indices,
                                              std::uint32_t first_vertex,
                                              std::uint32_t material) {
   if (indices.size() == 3) {
     const std::uint32_t a = first_vertex + indices[0], b = first_vertex + indices[1],
                         c = first_vertex + indices[2];
-    if (has_area(a, b, c))
-      add_triangle(a, b, c, material);
-    else
-      drop_flat({point(a), point(b), point(c)});
+    add_triangle(a, b, c, material);
     return Result::kCut;
   }
   face_.clear();
@@ -72,14 +70,13 @@ SceneBuilder::Result SceneBuilder::mesh_face(std::span<const std::uint32_t> indi
   }
   triangles_.clear();
   const Result result = splitter_.cut(face_, triangles_);
-  if (result == Result::kNoArea)
+  if (indices.size() < 3)
     drop_flat(face_);
+  for (std::uint32_t i = 2; result == Result::kNoArea && i < indices.size(); ++i)
+    triangles_.push_back({0, i - 1, i});
   add_intersections();
-  for (const auto& [i, j, k] : triangles_) {
-    const std::uint32_t a = face_vertices_[i], b = face_vertices_[j], c = face_vertices_[k];
-    if (has_area(a, b, c))
-      add_triangle(a, b, c, material);
-  }
+  for (const auto& [i, j, k] : triangles_)
+    add_triangle(face_vertices_[i], face_vertices_[j], face_vertices_[k], material);
   return result;
 }
 
@@ -137,31 +134,10 @@ std::vector<std::uint32_t> SceneBuilder::materials_of(const Mesh& mesh,
   return materials_of_colors(mesh, file_.scene.materials, of);
 }
 
-/// Half of the distance between points that lie evenly on half of their box's sides, and some more:
-/// balls of this radius leave few gaps.
-static double radius_for(const Mesh& mesh) {
-  constexpr double kShare = .7;
-  double size[3];
-  std::size_t axis = 0;
-  for (const std::vector<float>* const of : {&mesh.x, &mesh.y, &mesh.z}) {
-    double low = kLargest, high = -kLargest;
-    for (const float c : *of)
-      if (is_finite_float(c)) {
-        low = std::min(low, double{c});
-        high = std::max(high, double{c});
-      }
-    size[axis++] = std::max(high - low, 0.);
-  }
-  const double area = size[0] * size[1] + size[1] * size[2] + size[2] * size[0];
-  const double along = (size[0] + size[1] + size[2]) / double(mesh.vertex_count());
-  return area > 0 ? kShare * std::sqrt(area / double(mesh.vertex_count()))
-                  : (along > 0 ? kShare * along : 1);
-}
-
 /// Draws vertices as balls.
 void SceneBuilder::points(const Mesh& mesh, std::uint32_t material) {
   const float asked = file_.frame.length(*options_.point_radius);
-  const float radius = asked > 0 ? asked : float(radius_for(mesh));
+  const float radius = asked > 0 ? asked : radius_for(mesh.x, mesh.y, mesh.z);
   const auto materials = materials_of(mesh, mesh.vertex_count(), material);
   for (std::size_t i = 0; i < mesh.vertex_count(); ++i)
     sphere({mesh.x[i], mesh.y[i], mesh.z[i]}, radius, materials.empty() ? material : materials[i]);
@@ -216,28 +192,11 @@ CrossedFaces SceneBuilder::mesh(Mesh mesh, std::uint32_t material) {
 void SceneBuilder::mesh_triangles(std::span<const std::uint32_t> indices,
                                   std::uint32_t first_vertex,
                                   std::uint32_t material) {
-  Triangles& t = file_.scene.geometry.triangles;
-  std::size_t at = t.size();
-  const std::size_t most = at + indices.size() / 3;
-  t.a.resize(most);
-  t.b.resize(most);
-  t.c.resize(most);
-  t.material.resize(most, material);
-  for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
-    const std::uint32_t a = first_vertex + indices[i], b = first_vertex + indices[i + 1],
-                        c = first_vertex + indices[i + 2];
-    t.a[at] = a;
-    t.b[at] = b;
-    t.c[at] = c;
-    if (has_area(a, b, c))
-      ++at;
-    else  // the next triangle overwrites it
-      drop_flat({point(a), point(b), point(c)});
-  }
-  t.a.resize(at);
-  t.b.resize(at);
-  t.c.resize(at);
-  t.material.resize(at);
+  for (std::size_t i = 0; i + 2 < indices.size(); i += 3)
+    add_triangle(first_vertex + indices[i],
+                 first_vertex + indices[i + 1],
+                 first_vertex + indices[i + 2],
+                 material);
 }
 
 CrossedFaces SceneBuilder::mesh_faces(const Mesh& mesh,

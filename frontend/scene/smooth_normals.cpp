@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <span>
+#include <tuple>
 #include <vector>
 
 #include "frontend/scene/double3.hpp"
@@ -26,7 +29,7 @@ Corner corner_of(const Triangles& t, std::uint32_t a, std::uint32_t b, std::uint
                 ac = sum(1, point(t, c), -1, point(t, a));
   const Double3 normal = cross(ab, ac);
   if (normal == Double3{})
-    return {};  // no area: it says nothing, and is not seen
+    return {};
   return {sum(1 / length(normal), normal, 0, normal),
           sum(1 / (dot(ab, ab) * dot(ac, ac)), normal, 0, normal)};
 }
@@ -48,9 +51,10 @@ class Smoother {
   }
 
   void run() {
+    join_places();
     sort_corners();
     for (std::size_t v = 0; v + 1 < begin_.size(); ++v)
-      smooth_vertex(std::uint32_t(v), corners_.data() + begin_[v], begin_[v + 1] - begin_[v]);
+      smooth_place({corners_.data() + begin_[v], begin_[v + 1] - begin_[v]});
   }
 
  private:
@@ -58,32 +62,60 @@ class Smoother {
     return (corner % 3 == 0 ? t_.a : corner % 3 == 1 ? t_.b : t_.c)[first_ + corner / 3];
   }
 
-  /// Lists the corners of each vertex, in their order.
+  /// Finds one vertex for all in its place: many programs write three for each triangle.
+  void join_places() {
+    std::vector<std::uint32_t> used;
+    has_normal_.assign(t_.vertex_count(), true);
+    for (std::uint32_t k = 0; k < 3 * (t_.size() - first_); ++k)
+      if (const std::uint32_t v = vertex(k); has_normal_[v]) {
+        has_normal_[v] = false;
+        used.push_back(v);
+      }
+    const auto bits = [](float c) { return std::bit_cast<std::uint32_t>(c + 0.f); };  // no -0
+    const auto at = [&](std::uint32_t v) {
+      return std::tuple(bits(t_.x[v]), bits(t_.y[v]), bits(t_.z[v]));
+    };
+    std::ranges::sort(used, [&](std::uint32_t v, std::uint32_t w) {
+      return at(v) < at(w) || (at(v) == at(w) && v < w);
+    });
+    place_.resize(t_.vertex_count());
+    for (std::size_t i = 0; i < used.size(); ++i)
+      place_[used[i]] = i > 0 && at(used[i]) == at(used[i - 1]) ? place_[used[i - 1]] : used[i];
+  }
+
+  /// Lists the corners at each place, in their order.
   void sort_corners() {
     const auto count = std::uint32_t(3 * (t_.size() - first_));
     begin_.assign(t_.vertex_count() + 1, 0);
     for (std::uint32_t k = 0; k < count; ++k)
-      ++begin_[vertex(k) + 1];
+      ++begin_[place_[vertex(k)] + 1];
     for (std::size_t v = 1; v < begin_.size(); ++v)
       begin_[v] += begin_[v - 1];
     std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
     corners_.resize(count);
     for (std::uint32_t k = 0; k < count; ++k)
-      corners_[next[vertex(k)]++] = k;
+      corners_[next[place_[vertex(k)]]++] = k;
   }
 
-  void smooth_vertex(std::uint32_t v, const std::uint32_t* corners, std::size_t count) {
+  void smooth_place(std::span<const std::uint32_t> corners) {
     around_.clear();
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::uint32_t k = corners[i], other = k - k % 3;
-      around_.push_back(corner_of(t_, v, vertex(other + (k + 1) % 3), vertex(other + (k + 2) % 3)));
+    own_.clear();
+    for (const std::uint32_t k : corners) {
+      const std::uint32_t other = k - k % 3;
+      const Corner corner =
+          corner_of(t_, vertex(k), vertex(other + (k + 1) % 3), vertex(other + (k + 2) % 3));
+      if (corner.face == Double3{})
+        continue;  // no area: it says nothing, and is not seen
+      around_.push_back(corner);
+      own_.push_back(k);
     }
-    const std::size_t end = t_.vertex_count();
+    copy_of_.clear();
     Float3 normal;
-    for (std::size_t i = 0; i < count; ++i) {
-      if (i == 0 || count <= kMostAround)
+    for (std::size_t i = 0; i < own_.size(); ++i) {
+      if (i == 0 || own_.size() <= kMostAround)
         normal = mean_around(i);
-      vertex(corners[i]) = with_normal(v, end, normal, i == 0);
+      std::uint32_t& v = vertex(own_[i]);
+      v = with_normal(v, normal);
     }
   }
 
@@ -96,24 +128,27 @@ class Smoother {
     return in_floats(size > 0 ? sum(1 / size, all, 0, all) : around_[i].face);
   }
 
-  /// Vertex v, or one of its copies from `end` on, whose normal is this.
-  std::uint32_t with_normal(std::uint32_t v, std::size_t end, const Float3& normal, bool first) {
+  /// Vertex v, or one of its copies, which are the last vertices, whose normal is this.
+  std::uint32_t with_normal(std::uint32_t v, const Float3& normal) {
     const auto has = [&](std::size_t at) {
       return Float3{t_.nx[at], t_.ny[at], t_.nz[at]} == normal;
     };
-    if (first)
+    if (!has_normal_[v])
       set(v, normal);
+    has_normal_[v] = true;
     if (has(v))
       return v;
-    std::size_t at = end;
-    while (at < t_.vertex_count() && !has(at))
+    std::size_t at = t_.vertex_count() - copy_of_.size();
+    for (const std::uint32_t original : copy_of_) {
+      if (original == v && has(at))
+        return std::uint32_t(at);
       ++at;
-    if (at == t_.vertex_count()) {
-      for (auto* of : {&t_.x, &t_.y, &t_.z, &t_.nx, &t_.ny, &t_.nz, &t_.red, &t_.green, &t_.blue})
-        if (!of->empty())
-          of->push_back((*of)[v]);
-      set(at, normal);
     }
+    for (auto* of : {&t_.x, &t_.y, &t_.z, &t_.nx, &t_.ny, &t_.nz, &t_.red, &t_.green, &t_.blue})
+      if (!of->empty())
+        of->push_back((*of)[v]);
+    copy_of_.push_back(v);
+    set(at, normal);
     return std::uint32_t(at);
   }
 
@@ -126,8 +161,11 @@ class Smoother {
   Triangles& t_;
   const std::uint32_t first_;
   const double least_;
+  std::vector<bool> has_normal_;      ///< [vertices before]
+  std::vector<std::uint32_t> place_;  ///< [vertices before] the first in the same place
   std::vector<std::uint32_t> begin_, corners_;
   std::vector<Corner> around_;
+  std::vector<std::uint32_t> own_, copy_of_;  ///< corners at a place; what its copies are of
 };
 
 }  // namespace

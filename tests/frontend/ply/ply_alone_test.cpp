@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-
+#include "grelha/mesh_check.hpp"
 #include "tests/support/reading.hpp"
 
 namespace grelha {
@@ -27,24 +27,40 @@ TEST(PlyAlone, PolygonsAreCutAndBadFacesCounted) {
       read_scene(path, [&](const std::string& line) { warnings.push_back(line); });
   EXPECT_EQ(file.counts.ply, 6u);
   EXPECT_EQ(file.counts.materials, 0u);
-  EXPECT_EQ(file.scene.geometry.triangles.size(), 2u);
-  EXPECT_EQ(file.dropped.zero_area, 3u);
+  EXPECT_EQ(file.scene.geometry.triangles.size(), 4u);
+  EXPECT_EQ(file.dropped.zero_area, 1u) << "of two corners";
   EXPECT_EQ(file.dropped.not_finite, 2u);
   EXPECT_EQ(
       warnings,
       std::vector<std::string>{
           path +
-          ": warning: 5 primitives are left out: 2 not finite (or beyond 1e18), 3 without area"});
+          ": warning: 3 primitives are left out: 2 not finite (or beyond 1e18), 1 without area"});
 }
 
-TEST(PlyAlone, TrianglesWithoutAreaAreLeftOut) {
+/// They number the faces, and join what lies along a longer side, in polygons too.
+TEST(PlyAlone, TrianglesWithoutAreaAreKept) {
   const TemporaryFolder folder;
   const SceneFile file = read_scene(
       folder.add("m.ply", kAsciiTriangle + "0 0 0\n1 0 0\n0 1 0\n3 0 1 1\n3 2 1 0\n"), nullptr);
-  EXPECT_EQ(file.dropped.zero_area, 1u);
-  EXPECT_EQ(file.scene.geometry.triangles.a, std::vector<std::uint32_t>{2});
-  EXPECT_EQ(file.scene.geometry.triangles.material.size(), 1u);
+  EXPECT_EQ(file.dropped.zero_area, 0u);
+  EXPECT_EQ(file.scene.geometry.triangles.a, (std::vector<std::uint32_t>{0, 2}));
+  EXPECT_EQ(file.scene.geometry.triangles.material.size(), 2u);
   EXPECT_EQ(file.counts.ply, 2u);
+  // a tetrahedron with two vertices on its first side, each seen from one face alone
+  const std::string vertices =
+      "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty "
+      "float z\nelement face ";
+  const std::string sides =
+      "\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n3 0 0\n0 3 0\n0 0 3\n1 0 "
+      "0\n2 0 0\n3 0 2 1\n3 1 2 3\n3 0 3 2\n5 0 4 5 1 3\n";
+  for (const auto& [count, flat] : {std::pair<const char*, const char*>{"5", "4 0 1 5 4\n"},
+                                    {"6", "3 0 1 5\n3 0 5 4\n"},
+                                    {"4", ""}}) {
+    const SceneFile mesh =
+        read_scene(folder.add("t.ply", vertices + count + sides + flat), nullptr);
+    EXPECT_EQ(check_mesh(mesh.scene).is_closed(), *flat != 0) << flat;
+    EXPECT_EQ(mesh.dropped.zero_area, 0u);
+  }
 }
 
 TEST(PlyAlone, EmptyMeshHasAView) {

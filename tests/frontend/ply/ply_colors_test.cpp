@@ -92,19 +92,20 @@ std::vector<std::string> warnings_of(const std::string& bytes) {
   return lines;
 }
 
-std::string one_vertex(const std::string& type, const std::string& numbers) {
+using Names = std::array<const char*, 3>;
+
+std::string one_vertex(const std::string& type,
+                       const std::string& numbers,
+                       const Names& names = {"red", "green", "blue"}) {
   std::string text = "ply\nformat ascii 1.0\nelement vertex 1\n";
   for (const char* name : {"x", "y", "z"})
     text += std::string("property float ") + name + '\n';
-  for (const char* name : {"red", "green", "blue"})
+  for (const char* name : names)
     text += "property " + type + ' ' + name + '\n';
   return text + "end_header\n0 0 0 " + numbers + '\n';
 }
 
 TEST(PlyColors, WhatIsNoColourIsSaid) {
-  EXPECT_EQ(warnings_of(one_vertex("int", "1 2 3")),
-            std::vector<std::string>{"m.ply:3:9: warning: colours are left out: expected them as "
-                                     "uchar, ushort or float"});
   EXPECT_EQ(warnings_of(one_vertex("float", "2 nan .5")),
             std::vector<std::string>{
                 "m.ply:3:9: warning: 2 numbers of colours are cut: expected them from 0 to 1"});
@@ -114,6 +115,64 @@ TEST(PlyColors, WhatIsNoColourIsSaid) {
   EXPECT_EQ(cut.blue.at(0), .5f);
   EXPECT_EQ(read_ply_mesh("m.ply", one_vertex("uchar", "300 -7 255")).red.at(0), 1);
   EXPECT_NE(message_of([] { read_ply_mesh("m.ply", one_vertex("uchar", "1 2 x")); }), "");
+}
+
+TEST(PlyColors, AreNamedInManyWays) {
+  for (const Names& names : {Names{"r", "g", "b"},
+                             {"R", "G", "B"},
+                             {"Red", "Green", "Blue"},
+                             {"RED", "GREEN", "BLUE"},
+                             {"diffuse_red", "diffuse_green", "diffuse_blue"}}) {
+    EXPECT_EQ(warnings_of(one_vertex("uchar", "255 0 51", names)), std::vector<std::string>{});
+    const Mesh mesh = read_ply_mesh("m.ply", one_vertex("uchar", "255 0 51", names));
+    ASSERT_EQ(mesh.red, std::vector<float>{1}) << names[0];
+    EXPECT_EQ(mesh.green, std::vector<float>{0});
+    EXPECT_NEAR(mesh.blue.at(0), .0331048, 1e-6);
+  }
+}
+
+/// The largest number says what white is where the type does not.
+TEST(PlyColors, AreReadByTheirRange) {
+  struct OfRange {
+    const char *type, *numbers;
+    float green;
+    const char* warning;  ///< the end of it
+  };
+  const float half = .2158605f;
+  for (const OfRange& c :
+       {OfRange{"ushort", "255 128 0", half, "up to 255, and read them as sRGB from 0 to 255"},
+        {"ushort", "65535 13107 0", .2f, ""},
+        {"ushort", "256 0 0", 0, ""},
+        {"ushort", "0 0 0", 0, ""},
+        {"short", "255 128 0", half, "read them as sRGB from 0 to 255"},
+        {"int", "255 128 0", half, "read them as sRGB from 0 to 255"},
+        {"uint", "200 128 0", half, "read them as sRGB from 0 to 255"},
+        {"int", "1 1 0", 1, "read them as light from 0 to 1"},
+        {"int", "60000 13107 0", .2f, "read them as light from 0 to 65535"},
+        {"uint", "4294967295 858993459 0", .2f, "from 0 to 4294967295"},
+        {"char", "-1 -128 0", half, "read them as sRGB from 0 to 255"},
+        {"float", "255 128 0", half, "read them as sRGB from 0 to 255"},
+        {"float", "254.5 127.6 0", half, "read them as sRGB from 0 to 255"},
+        {"double", "65535 13107 0", .2f, "read them as light from 0 to 65535"},
+        {"float", "1 .2 0", .2f, ""},
+        {"float", "1.5 .2 0", .2f, "1 numbers of colours are cut: expected them from 0 to 1"}}) {
+    const std::string bytes = one_vertex(c.type, c.numbers);
+    EXPECT_NEAR(read_ply_mesh("m.ply", bytes).green.at(0), c.green, 1e-6) << c.type << c.numbers;
+    const auto lines = warnings_of(bytes);
+    ASSERT_EQ(lines.size(), *c.warning ? 1u : 0u) << c.type << ' ' << c.numbers;
+    EXPECT_TRUE(lines.empty() || lines[0].ends_with(c.warning)) << lines[0];
+  }
+}
+
+TEST(PlyColors, OfElementsByOtherNames) {
+  const Mesh mesh = read_ply_mesh(
+      "m.ply",
+      "ply\nformat ascii 1.0\nelement vertices 3\nproperty float x\nproperty float y\nproperty "
+      "float z\nelement Faces 1\nproperty list uchar int vertex_indices\nproperty uchar "
+      "r\nproperty uchar g\nproperty uchar b\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 255 0 0\n");
+  EXPECT_EQ(mesh.face_count(), 1u);
+  EXPECT_EQ(mesh.vertex_count(), 3u);
+  EXPECT_EQ(mesh.red, std::vector<float>{1});
 }
 
 /// A square of two triangles, red and green, both as faces have colours.

@@ -144,19 +144,90 @@ TEST(Stl, WhatIsBrokenIsSaid) {
   EXPECT_EQ(message(start + "endloop\n"),
             "m.stl:6:1: error: expected three vertices before \"endloop\", found \"endloop\"");
   EXPECT_EQ(message(start + "normal\n"),
-            "m.stl:6:1: error: expected \"facet\", \"vertex\" or \"endsolid\", found \"normal\"");
+            "m.stl:6:1: error: expected \"vertex\" or \"endloop\", found \"normal\"");
   EXPECT_NE(message(start).find("expected \"endloop\" behind three vertices, found end of file"),
             std::string::npos);
-  EXPECT_EQ(message(binary_of(random_shape(1)).substr(0, 1000)),
-            "m.stl:byte 1000: error: expected \"solid\" in text, or 2084 bytes of triangles, found "
-            "end of file");
-  EXPECT_EQ(message(""),
-            "m.stl:byte 0: error: expected \"solid\" in text, or 84 bytes of triangles, found end "
-            "of file");
-  std::vector<std::string> lines;
-  read_stl_mesh(
-      "m.stl", "solid\n", [&](const std::string& line) { lines.push_back(line); }, nullptr, {});
-  EXPECT_EQ(lines, std::vector<std::string>{"m.stl: warning: the file ends without \"endsolid\""});
+  EXPECT_EQ(message("solid\nfacet\nouter loop\nendloop\nendfacet\nendsolid\n"),
+            "m.stl:4:1: error: expected three vertices before \"endloop\", found \"endloop\"");
+  EXPECT_EQ(message(start + "vertex 0 1 0\nvertx 0 0 1\nendloop\n"),
+            "m.stl:7:1: error: expected \"vertex\" or \"endloop\", found \"vertx\"");
+  EXPECT_EQ(message(start + "vertex 0 1 0\nfacet normal 0 0 1\n"),
+            "m.stl:7:1: error: expected \"endloop\" behind three vertices, found \"facet\"");
+  EXPECT_EQ(message("solid\n"),
+            "m.stl:2:1: error: expected a facet, or \"endsolid\", found end of file");
+  EXPECT_EQ(message("<html>\n<body>\n"), "m.stl:1:1: error: expected STL, found XML or a web page");
+  EXPECT_EQ(message("version https://git-lfs.github.com/spec/v1\n").substr(0, 44),
+            "m.stl:1:1: error: expected a scene, found a ");
+  for (const std::string header : {"made by a test", "solid by name alone"}) {
+    EXPECT_EQ(message(binary_of(random_shape(1), header).substr(0, 1000)),
+              "m.stl:byte 1000: error: expected 40 triangles, found 18 in 1000 bytes, and then the "
+              "end of the file");
+    EXPECT_EQ(
+        message(binary_of(random_shape(1), header).substr(0, 84)),
+        "m.stl:byte 84: error: expected 40 triangles, found 0 in 84 bytes, and then the end of "
+        "the file");
+  }
+}
+
+TEST(Stl, WhatIsOddIsWarnedOf) {
+  const auto warnings = [](const std::string& bytes) {
+    std::string lines;
+    read_stl_mesh(
+        "m.stl", bytes, [&](const std::string& line) { lines += line + '\n'; }, nullptr, {});
+    return lines;
+  };
+  const std::string solid = text_of(random_shape(1));
+  EXPECT_EQ(warnings(solid), "");
+  EXPECT_EQ(warnings(solid.substr(0, solid.find("endsolid"))),
+            "m.stl: warning: the file ends without \"endsolid\"\n");
+  EXPECT_EQ(warnings("written by x\n" + solid),
+            "m.stl:1:1: warning: no line of an STL file begins with \"written\"; such lines are "
+            "skipped\n");
+  EXPECT_EQ(warnings(binary_of(random_shape(1)) + std::string(60, ' ')),
+            "m.stl: warning: 60 bytes follow the last of 40 triangles; they are skipped\n");
+}
+
+/// Of loops of more corners than three, and of files of several solids, or of one line.
+TEST(Stl, LoopsAndSolids) {
+  const auto faces = [](const std::string& bytes) {
+    const Mesh mesh = read_stl_mesh("m.stl", bytes, {}, nullptr, {});
+    return std::pair(mesh.face_count(), mesh.indices.size());
+  };
+  const std::string loop = "facet\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\n";
+  const std::string end = "endloop\nendfacet\n";
+  EXPECT_EQ(faces("solid\n" + loop + end), std::pair(1ul, 3ul));
+  EXPECT_EQ(faces("solid\n" + loop + "endfacet\nendsolid"), std::pair(1ul, 3ul));
+  EXPECT_EQ(faces("solid\n" + loop + "vertex 0 0 0\n" + end), std::pair(1ul, 3ul)) << "closed";
+  EXPECT_EQ(faces("solid\n" + loop + end + loop + "vertex 0 1 0\n" + end), std::pair(2ul, 7ul));
+  EXPECT_EQ(faces(loop + end), std::pair(1ul, 3ul)) << "without a solid";
+  EXPECT_EQ(faces("solid a\n" + loop + end + "endsolid a\nsolid b\n" + loop + end + loop + end),
+            std::pair(3ul, 9ul));
+  std::string line = "solid a name " + loop + end + loop + end + "endsolid a name solid b " + loop +
+                     end + "endsolid b";
+  std::ranges::replace(line, '\n', ' ');
+  EXPECT_EQ(faces(line), std::pair(3ul, 9ul));
+  for (std::size_t at = 0; (at = line.find("facet outer", at)) != line.npos; at += 20)
+    line.insert(at + 5, " normal 0 0 1");
+  EXPECT_EQ(faces(line), std::pair(3ul, 9ul));
+  EXPECT_EQ(faces("solid a\nendsolid a\n"), std::pair(0ul, 0ul));
+}
+
+/// By its bytes, whatever it is called; other names are not mistaken.
+TEST(Stl, OfAnyName) {
+  const TemporaryFolder folder;
+  const Shape shape = random_shape(1);
+  for (const std::string& bytes : {text_of(shape), binary_of(shape), binary_of(shape, "solid x")}) {
+    EXPECT_EQ(read_scene(folder.add("part", bytes), nullptr).counts.mesh, 40u);
+    folder.add("part.stl", bytes);
+    const SceneFile file =
+        read_scene(folder.add("s.nff", kView + kFill + "ply part.stl\n"), nullptr);
+    EXPECT_EQ(file.scene.geometry.triangles.size(), 40u);
+  }
+  const std::string cut = folder.add("part", binary_of(shape).substr(0, 1000));
+  EXPECT_NE(message_of([&] { read_scene(cut, nullptr); }).find("expected 40 triangles, found 18"),
+            std::string::npos);
+  const std::string scene = folder.add("s.nff", "# solid facet vertex 0 0 0\n" + kView + kFill);
+  EXPECT_EQ(read_scene(scene, nullptr).counts.mesh, 0u);
 }
 
 /// Whatever is changed, a file is read or refused in one line.

@@ -182,7 +182,7 @@ TEST(Points, AreBallsOnRequest) {
   EXPECT_EQ(s.material[2], s.material[0]);
   const float radius =
       read_scene(path, nullptr, {.meshes = {.point_radius = 0}}).scene.geometry.spheres.radius[0];
-  EXPECT_NEAR(radius, .7 * std::sqrt(4. * 4 / 4), 1e-6);
+  EXPECT_NEAR(radius, .65 * 4, 1e-6);
   const SceneFile scene =
       read_scene(folder.add("s.nff", kView + kFill + "ply cloud.ply\ns 0 0 0 1\n"),
                  nullptr,
