@@ -4,11 +4,13 @@
 #include "frontend/cli/options.hpp"
 #include "frontend/files/atomic_file.hpp"
 #include "frontend/files/nearest.hpp"
+#include "frontend/files/text.hpp"
 
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 namespace grelha {
 
@@ -25,11 +27,44 @@ std::vector<std::string> option_names(const CLI::App& app) {
   return names;
 }
 
+/// What other programs call our options.
+constexpr std::pair<std::string_view, std::string_view> kOtherNames[] = {
+    {"--antialias", "--aa"},
+    {"--bg", "--background"},
+    {"--bounces", "--depth"},
+    {"--camera", "--eye"},
+    {"--dof", "--lens"},
+    {"--fov", "--angle"},
+    {"--frames", "--turntable"},
+    {"--gamma", "--srgb"},
+    {"--geometry", "--size"},
+    {"--height", "--size"},
+    {"--jobs", "--threads"},
+    {"--lookat", "--at"},
+    {"--max-depth", "--depth"},
+    {"--point-size", "--points"},
+    {"--quality", "--error"},
+    {"--res", "--size"},
+    {"--resolution", "--size"},
+    {"--rotate", "--orbit"},
+    {"--seconds", "--time"},
+    {"--spp", "--samples"},
+    {"--tolerance", "--error"},
+    {"--width", "--size"},
+    {"--zoom", "--orbit"},
+    {"-n", "--samples"},
+    {"-s", "--size"},
+    {"-t", "--threads"},
+    {"-w", "--size"}};
+
 /// `; did you mean --size?`, or nothing.
 std::string suggested_option(const CLI::App& app, const std::string& word) {
+  const std::string name = word.substr(0, word.find('='));
+  for (const auto& [other, own] : kOtherNames)
+    if (name == other && app.get_option_no_throw(std::string(own)))
+      return "; did you mean " + std::string(own) + '?';
   const std::vector<std::string> names = option_names(app);
-  return suggest(word.substr(0, word.find('=')),
-                 std::vector<std::string_view>(names.begin(), names.end()));
+  return suggest(name, std::vector<std::string_view>(names.begin(), names.end()));
 }
 
 [[noreturn]] void refuse(const CLI::App& app,
@@ -62,11 +97,34 @@ void check_options(const CLI::App& sub, const std::vector<std::string>& words) {
   }
 }
 
+/// `; did you mean grelha render x.nff?` of a word that is a scene, or nothing.
+std::string suggested_command(const std::string& word) {
+  std::string name = in_small_letters(word);
+  if (name.ends_with(".gz"))
+    name.resize(name.size() - 3);
+  constexpr std::string_view kEndings[] = {".nff", ".p3f", ".ply", ".stl"};
+  const bool is_scene = std::ranges::any_of(
+      kEndings, [&](std::string_view ending) { return name.ends_with(ending); });
+  return is_scene ? "; did you mean grelha render " + word + '?' : "";
+}
+
+/// Refuses an option before the command, which it belongs to, or one that is none.
+void check_first_option(const CLI::App& app, const std::string& word) {
+  std::string name = word.substr(0, word.find('='));
+  if (app.get_option_no_throw(name))
+    return;
+  for (const CLI::App* sub : app.get_subcommands({}))
+    if (sub->get_option_no_throw(name))
+      throw UsageError("expected a command before \"" + word + "\": grelha " + sub->get_name() +
+                       ' ' + (sub->get_name() == "scene" ? "NAME " : "SCENE ") + name +
+                       " ... (see --help)");
+  option_of(app, word, name);
+}
+
 /// CLI11 would only say that a command is missing.
 void check_command(const CLI::App& app, const std::string& word) {
-  std::string name;
   if (word.starts_with('-'))
-    return void(option_of(app, word, name));
+    return check_first_option(app, word);
   std::string commands;
   std::vector<std::string_view> names;
   for (const CLI::App* sub : app.get_subcommands({})) {
@@ -75,8 +133,9 @@ void check_command(const CLI::App& app, const std::string& word) {
     commands += (commands.empty() ? "" : ", ") + sub->get_name();
     names.push_back(sub->get_name());
   }
+  const std::string scene = suggested_command(word);
   throw UsageError("command: expected one of " + commands + ", found \"" + word + '"' +
-                   suggest(word, names));
+                   (scene.empty() ? suggest(word, names) : scene));
 }
 
 std::string first_line(const std::string& text) {

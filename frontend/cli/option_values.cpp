@@ -1,6 +1,7 @@
 #include "frontend/cli/option_values.hpp"
 
 #include "frontend/files/atomic_file.hpp"
+#include "frontend/files/text.hpp"
 #include "frontend/images/image_file.hpp"
 #include "frontend/scene/scene_builder.hpp"
 
@@ -10,6 +11,7 @@
 #include <initializer_list>
 #include <optional>
 #include <span>
+#include <utility>
 
 namespace grelha::option_values {
 namespace {
@@ -100,6 +102,34 @@ std::uint64_t sample_count(const std::string& text, std::size_t begin) {
   if (!count || *count == 0)
     reject("--time", "samples:N with N from 1 to 2^64 - 1", text);
   return *count;
+}
+
+constexpr std::pair<std::string_view, std::uint32_t> kColors[] = {
+    {"black", 0},          {"silver", 0xC0C0C0},  {"gray", 0x808080},   {"grey", 0x808080},
+    {"white", 0xFFFFFF},   {"maroon", 0x800000},  {"red", 0xFF0000},    {"purple", 0x800080},
+    {"fuchsia", 0xFF00FF}, {"magenta", 0xFF00FF}, {"green", 0x008000},  {"lime", 0x00FF00},
+    {"olive", 0x808000},   {"yellow", 0xFFFF00},  {"orange", 0xFFA500}, {"navy", 0x000080},
+    {"blue", 0x0000FF},    {"teal", 0x008080},    {"aqua", 0x00FFFF},   {"cyan", 0x00FFFF}};
+
+/// The bytes of a colour of a screen as shares of 255.
+std::optional<Float3> screen_color(const std::string& text) {
+  const auto channels = [](std::uint32_t rgb, unsigned bits) {
+    const std::uint32_t most = (1u << bits) - 1;
+    const auto channel = [=](unsigned i) { return float(rgb >> (i * bits) & most) / float(most); };
+    return Float3{channel(2), channel(1), channel(0)};
+  };
+  const std::string small = in_small_letters(text);
+  for (const auto& [name, rgb] : kColors)
+    if (small == name)
+      return channels(rgb, 8);
+  if (text.size() != 4 && text.size() != 7)
+    return {};
+  std::uint32_t rgb = 0;
+  const char* const end = text.data() + text.size();
+  const auto [past, error] = std::from_chars(text.data() + 1, end, rgb, 16);
+  if (text[0] != '#' || error != std::errc() || past != end)
+    return {};
+  return channels(rgb, text.size() == 4 ? 4 : 8);
 }
 
 }  // namespace
@@ -280,14 +310,21 @@ Orbit orbit(const std::string& text) {
           p.size() < 3 ? 1 : fitting<double>("--orbit", p[2], "a zoom of .001 to 1000", is_zoom)};
 }
 
-Float3 color(const std::string& option, const std::string& text) {
-  const auto p = parts(option, text, 1, 3, "R,G,B or one number");
-  if (p.size() == 2)
-    reject(option, "R,G,B or one number", text);
+void parse_background(const std::string& text, ViewOptions& view) {
+  constexpr const char* kExpected = "R,G,B, one number, #rrggbb or the name of a color";
+  view.background_is_encoded = true;
+  view.background = screen_color(text);
+  if (view.background)
+    return;
+  const auto p = parts("--background", text, 1, 3, kExpected);
+  if (p.size() == 2 ||
+      !(text.starts_with('.') || (text[0] >= '0' && text[0] <= '9') || text.starts_with('-')))
+    reject("--background", kExpected, text);
   const auto channel = [&](std::size_t i) {
-    return float(not_negative(option, p[std::min(i, p.size() - 1)], "light"));
+    return float(not_negative("--background", p[std::min(i, p.size() - 1)], "light"));
   };
-  return {channel(0), channel(1), channel(2)};
+  view.background_is_encoded = false;
+  view.background = Float3{channel(0), channel(1), channel(2)};
 }
 
 double interval(const std::string& option, const std::string& text) {

@@ -44,7 +44,8 @@ Orbit orbit(const std::string& text);
 double point_radius(const std::string& text);  ///< 0: auto
 double smoothness(const std::string& text);
 /// "R,G,B", or one number for all three.
-Float3 color(const std::string& option, const std::string& text);
+/// Of R,G,B, one number, #rgb, #rrggbb, or a name of CSS 2.
+void parse_background(const std::string& text, ViewOptions& view);
 /// Seconds.
 double interval(const std::string& option, const std::string& text);
 

@@ -105,9 +105,10 @@ void add_view(CLI::App& app, ViewOptions& view) {
       "HEIGHT",
       "parallel rays, and how much the picture shows, scene units",
       [&](Text t) { view.orthographic_height = picture_height(t); });
-  add("--background", "R,G,B", "light of rays that hit nothing; 1 is white", [&](Text t) {
-    view.background = color("--background", t);
-  });
+  add("--background",
+      "COLOR",
+      "of rays that hit nothing: light R,G,B, where 1 is white, or #rrggbb, white, black, ...",
+      [&](Text t) { parse_background(t, view); });
   add("--lights",
       "camera|mesh",
       "what the lights of a bare mesh stay with when the camera moves [camera]",

@@ -26,9 +26,10 @@ std::vector<std::string> value_words(const OptionHelp& o) {
   if (o.placeholder.find('|') == std::string::npos)
     return words;
   std::istringstream in(o.placeholder);
-  // of area:N area:
+  // of area:N area:, and nothing of RADIUS
   for (std::string w; std::getline(in, w, '|');)
-    words.push_back(w.substr(0, std::min(w.find(':'), w.size() - 1) + 1));
+    if (w[0] < 'A' || w[0] > 'Z')
+      words.push_back(w.substr(0, std::min(w.find(':'), w.size() - 1) + 1));
   return words;
 }
 

@@ -156,7 +156,7 @@ class SceneRender {
 
   /// Takes one of the views that the command asks for.
   void look(int number) {
-    ViewOptions view = command_.input.view;
+    ViewOptions view = with_background(command_.input.view, command_.srgb || file_.colors.any());
     if (command_.turntable > 0) {
       Orbit orbit = view.orbit.value_or(Orbit{});
       orbit.azimuth_deg += 360. * number / command_.turntable;
@@ -186,6 +186,7 @@ class SceneRender {
                      camera_.height,
                      command_.transparent);
     warn_empty_scene(command_.scene, file_, log_.reporting());
+    warn_of_background(command_.scene, command_.input.view, log_.reporting());
     warn_of_cut_light(command_.scene, file_.scene, resolved_.render, log_.reporting());
     log_.check_none(command_.input);
     const PictureMemory memory = picture_memory(resolved_, camera_);

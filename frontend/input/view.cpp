@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "frontend/images/tone.hpp"
 #include "frontend/scene/double3.hpp"
 #include "kernel/base/sine.hpp"
 
@@ -129,6 +130,24 @@ std::vector<std::string> lines_of(const View& view, const Frame& frame) {
                     joined(words_of(light.color), " "));
   lines.push_back("b " + joined(words_of(view.lighting.background), " "));
   return lines;
+}
+
+ViewOptions with_background(ViewOptions options, bool colors_are_light) {
+  const auto light = [](float c) { return static_cast<float>(light_of_srgb(double{c})); };
+  if (const auto b = options.background; b && options.background_is_encoded && colors_are_light)
+    options.background = Float3{light(b->x), light(b->y), light(b->z)};
+  return options;
+}
+
+void warn_of_background(const std::string& path, const ViewOptions& options, const Warn& warn) {
+  if (!options.background || options.background_is_encoded)
+    return;
+  const Float3 b = *options.background;
+  const float channels[] = {b.x, b.y, b.z};
+  const float most = std::ranges::max(channels);
+  if (most > 1 && std::ranges::all_of(channels, [](float c) { return c == std::floor(c); }))
+    warn(path + ": warning: --background " + joined(words_of(b), ",") + " is " + shortest(most) +
+         " times as bright as white, which is 1; #rrggbb takes bytes");
 }
 
 View view_of(const SceneFile& file) {

@@ -30,6 +30,7 @@ struct ViewOptions {
   std::optional<double> angle_deg, orthographic_height;
   std::optional<Orbit> orbit;
   std::optional<Float3> background;
+  bool background_is_encoded = false;  ///< by the sRGB curve, as colours of a screen are
   /// made-up lights move with the camera, or stay where they are; absent: they move
   std::optional<bool> lights_follow;
 };
@@ -41,6 +42,13 @@ struct View {
   bool made_up_lights = false;
   MeshExtent extent;  ///< of a bare mesh, whose camera is made up as well
 };
+
+/// Decodes a background where the colours of the scene are light, which the picture encodes again.
+/// Elsewhere they are shown as they are.
+ViewOptions with_background(ViewOptions options, bool colors_are_light);
+
+/// Warns of a background that was probably meant as bytes.
+void warn_of_background(const std::string& path, const ViewOptions& options, const Warn& warn);
 
 /// The view of a file.
 View view_of(const SceneFile& file);

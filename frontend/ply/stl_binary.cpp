@@ -85,7 +85,10 @@ std::uint64_t most_stl_triangles(std::string_view bytes) {
 }
 
 bool has_plausible_triangle(std::string_view bytes) {
-  return bytes.size() >= kBegin + kTriangle && is_plausible(bytes, plain(1));
+  if (bytes.size() < kBegin + kTriangle || !is_plausible(bytes, plain(1)))
+    return false;
+  const std::string_view corners = bytes.substr(kBegin + kNormal, kAttribute - kNormal);
+  return corners.find_first_not_of('\0') != corners.npos;
 }
 
 std::optional<StlLayout> exact_stl_layout(std::string_view bytes) {
@@ -97,11 +100,13 @@ std::optional<StlLayout> exact_stl_layout(std::string_view bytes) {
   if (body(bytes) == kTriangle * std::uint64_t{reversed(count)})
     return plain(reversed(count), true);
   const bool unknown = count == 0 || count == kUnknown;
+  if (unknown && !has_plausible_triangle(bytes))
+    return {};
   const StlLayout lengths = with_lengths(bytes, unknown ? kUnknown : count);
   if (lengths.end == bytes.size() && (unknown || lengths.triangles == count) &&
       is_plausible(bytes, lengths))
     return lengths;
-  if (unknown && body(bytes) % kTriangle == 0 && has_plausible_triangle(bytes))
+  if (unknown && body(bytes) % kTriangle == 0)
     return plain(most_stl_triangles(bytes));
   return {};
 }

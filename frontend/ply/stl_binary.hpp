@@ -30,7 +30,7 @@ std::optional<StlLayout> exact_stl_layout(std::string_view bytes);
 /// shorter than its count says.
 std::optional<StlLayout> loose_stl_layout(std::string_view bytes);
 
-/// Returns whether the first triangle has coordinates as meshes have them.
+/// Returns whether the first triangle has coordinates as meshes have them, not all of them 0.
 bool has_plausible_triangle(std::string_view bytes);
 
 /// The number of triangles that the header says, and what follows it holds at most.

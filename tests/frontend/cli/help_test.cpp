@@ -92,6 +92,8 @@ TEST(Pages, HoldEveryOptionThatHelpShows) {
     EXPECT_NE(man.find("grelha " + c.name), std::string::npos);
   }
   EXPECT_GE(options, 30u);
+  EXPECT_NE(bash.find("render,--points) words=\"auto\""), std::string::npos);
+  EXPECT_EQ(bash.find("RADIUS"), std::string::npos) << "no value";
 }
 
 }  // namespace

@@ -25,9 +25,6 @@ struct Other {
 const std::string kMeshAdvice = ": convert it to PLY";
 
 const std::vector<Other> kOthers{
-    {"STL in words",
-     "solid cube\n  facet normal 0 0 1\n    outer loop\n      vertex 0 0 0\n",
-     "an STL mesh: give it a name ending in .stl"},
     {"OBJ", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "a Wavefront OBJ mesh" + kMeshAdvice},
     {"OBJ behind comments",
      "# Blender\n\nmtllib cube.mtl\no Cube\nv 1.0 1.0 -1.0\n",
@@ -52,7 +49,7 @@ TEST(OtherFormats, AreNamed) {
       const std::string scene = folder.add("scene.nff", text), mesh = folder.add("mesh.ply", text);
       const std::string found = ", found " + other.name;
       EXPECT_EQ(message_of([&] { read_scene(scene, nullptr); }),
-                scene + ":1:1: error: expected NFF or PLY" + found)
+                scene + ":1:1: error: expected NFF, PLY or STL" + found)
           << other.what;
       EXPECT_EQ(message_of([&] { read_scene(mesh, nullptr); }),
                 mesh + ":1:1: error: expected PLY" + found)
@@ -62,6 +59,14 @@ TEST(OtherFormats, AreNamed) {
                 mesh + ":1:1: error: expected PLY" + found)
           << other.what;
     }
+}
+
+TEST(OtherFormats, StlUnderTheNameOfPly) {
+  const TemporaryFolder folder;
+  const std::string mesh = folder.add(
+      "mesh.ply", "solid cube\n  facet normal 0 0 1\n    outer loop\n      vertex 0 0 0\n");
+  EXPECT_EQ(message_of([&] { read_scene(mesh, nullptr); }),
+            mesh + ":1:1: error: expected PLY, found an STL mesh: give it a name ending in .stl");
 }
 
 TEST(OtherFormats, AreNoneOfOurs) {

@@ -303,7 +303,7 @@ TEST(ViewOptions, ThatCannotBeAreRefused) {
   EXPECT_EQ(error("--orbit 1e9,2"), "--orbit: expected degrees, at most 100 turns, found \"1e9\"");
   EXPECT_EQ(error("--orthographic 0"),
             "--orthographic: expected a height above 0 and up to 1e18, found \"0\"");
-  EXPECT_EQ(error("--background 1,2"), "--background: expected R,G,B or one number, found \"1,2\"");
+  EXPECT_EQ(error("--background 1,2"), "--background: expected R,G,B, one number, #rrggbb or the name of a color, found \"1,2\"");
   EXPECT_EQ(error("--lights eye"), "--lights: expected one of camera, mesh, found \"eye\"");
 }
 

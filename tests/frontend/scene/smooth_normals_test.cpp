@@ -3,6 +3,8 @@
 #include <numbers>
 
 #include "frontend/input/read_scene.hpp"
+#include "frontend/ply/ply_colors.hpp"
+#include "frontend/scene/point_spacing.hpp"
 #include "frontend/scene/smooth_normals.hpp"
 #include "grelha/query.hpp"
 #include "tests/support/random.hpp"
@@ -161,6 +163,34 @@ TEST(SmoothNormals, AreForMeshesWithoutAny) {
   EXPECT_GT(t.nz[4], .8f);
 }
 
+/// Vertices at one place are one, whatever their numbers; each keeps its colour.
+TEST(SmoothNormals, OfVerticesWrittenForEachFace) {
+  const TemporaryFolder folder;
+  const std::string bend = "0 0 0\n1 0 0\n1 1 .5\n0 1 0\n", faces = "3 0 1 2\n3 0 2 3\n";
+  const std::string list = "\nproperty list uchar int vertex_indices\nend_header\n";
+  const std::string shared = folder.add("a.ply", kHead + "element face 2" + list + bend + faces);
+  const std::string soup = folder.add(
+      "b.ply",
+      "ply\nformat ascii 1.0\nelement vertex 9\nproperty float x\nproperty float y\nproperty "
+      "float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nelement face 3" +
+          list +
+          "0 0 0 1 1 1\n1 0 0 2 2 2\n1 1 .5 3 3 3\n-0 0 0 4 4 4\n1 1 .5 5 5 5\n0 1 0 6 6 6\n"
+          "0 0 0 7 7 7\n.5 .5 .25 7 7 7\n1 1 .5 7 7 7\n3 0 1 2\n3 3 4 5\n3 6 7 8\n");
+  for (const double degrees : {60., 5.}) {
+    const ReadOptions smooth{.meshes = {.smooth_deg = degrees}};
+    const Triangles one = read_scene(shared, nullptr, smooth).scene.geometry.triangles,
+                    all = read_scene(soup, nullptr, smooth).scene.geometry.triangles;
+    EXPECT_EQ(one.vertex_count(), degrees > 10 ? 4u : 6u);
+    EXPECT_EQ(all.vertex_count(), 9u);
+    for (std::size_t i = 0; i < 2; ++i)
+      for (const auto corner : {&Triangles::a, &Triangles::b, &Triangles::c}) {
+        const std::uint32_t v = (one.*corner)[i], w = (all.*corner)[i];
+        EXPECT_EQ(normal(one, v), normal(all, w)) << degrees << ' ' << i;
+        EXPECT_EQ(all.red[w], light_of_byte(w + 1));
+      }
+  }
+}
+
 const std::string kCloud = kHead +
                            "property float red\nproperty float green\nproperty float blue\n"
                            "end_header\n0 0 0 1 0 0\n4 0 0 0 1 0\n4 4 0 1 0 0\n0 nan 0 0 0 1\n";
@@ -191,6 +221,55 @@ TEST(Points, AreBallsOnRequest) {
   EXPECT_EQ(scene.scene.materials.at(scene.scene.geometry.spheres.material[3]),
             scene.scene.materials[0])
       << "what follows has the file's material";
+}
+
+/// A few points far out, and points written twice, do not change the size of the others.
+TEST(Points, AreAsLargeAsTheirNeighborsAreNear) {
+  Random random(1);
+  const auto with = [&](std::size_t strays, const auto& add) {
+    std::vector<float> x, y, z;
+    const auto put = [&](float px, float py, float pz) {
+      x.push_back(px);
+      y.push_back(py);
+      z.push_back(pz);
+    };
+    add(put);
+    for (std::size_t i = 0; i < strays; ++i)
+      put(1000 + random.point(300).x, random.point(1e6f).y, 1e4f);
+    return radius_for(x, y, z);
+  };
+  const auto lattice = [](const auto& put) {
+    for (int i = 0; i < 900; ++i)
+      put(float(i % 30) / 4, float(i / 30) / 4, 0);
+  };
+  const auto doubled = [&](const auto& put) {
+    lattice(put);
+    lattice(put);
+    put(NAN, 0, 0);
+  };
+  const auto on_ball = [&](const auto& put) {
+    for (int i = 0; i < 5000; ++i) {
+      const Float3 p = random.point(1);
+      const float size = std::hypot(p.x, p.y, p.z);
+      put(p.x / size, p.y / size, p.z / size);
+    }
+  };
+  for (const std::size_t strays : {0u, 1u, 20u, 100u}) {
+    EXPECT_NEAR(with(strays, lattice), .65 / 4, 1e-6) << strays;
+    EXPECT_NEAR(with(strays, doubled), .65 / 4, 1e-6) << strays;
+    EXPECT_NEAR(with(strays, on_ball), .65 * std::sqrt(4 * std::numbers::pi / 5000), .005)
+        << strays;
+  }
+  EXPECT_EQ(radius_for({}, {}, {}), 1);
+  EXPECT_EQ(radius_for({1, 1}, {2, 2}, {3, 3}), 1) << "in one place";
+  EXPECT_NEAR(radius_for({0, 3}, {0, 4}, {0, 0}), .65 * 5, 1e-5);
+  // all but a few in one plane, across which every point is as near
+  std::vector<float> x(200'000, 0), y, z;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    y.push_back(float(i % 500));
+    z.push_back(float(i / 500));
+  }
+  EXPECT_NEAR(radius_for(x, y, z), .65, 1e-6);
 }
 
 /// Balls fill the picture as meshes do, however large they are.
