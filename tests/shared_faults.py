@@ -4,6 +4,7 @@ which are not part of the project, give what is right. Skipped where the folder 
 that are not right yet are named with the reason. Scripts run with the module of this build or of
 the preset python beside it; without one they are named as skipped."""
 import array
+import json
 import os
 import pathlib
 import re
@@ -14,6 +15,7 @@ LATER = {
     "skip_cost.py": "a claim of speed: skip costs 5 to 7 times t_min",
     "p57_far_closest_cost.py": "a claim of speed: closest points from afar are linear",
 }
+SUFFIXES = {".nff", ".p3f", ".ply", ".stl", ".cpp", ".py"}
 HELPERS = {"ref.py", "moved_far_picture.py"}  # what others import or run
 PROGRAMS = {  # what a program must say, and must not
     "moved_far.cpp": (r"mesh   size 2 at 1e\+06 .*: 0 lost, 0 false, 0 other",
@@ -66,6 +68,12 @@ SCRIPTS = {  # the same of scripts, with their arguments and what their status m
     "no_init.py": (r"^\w+Error: .", r"Fatal Python error", [1]),
 }
 CASES = (r"^RESULT right$", r"^WRONG", [0])  # of the scripts p01 to p57
+STL = {  # triangles, or what is said of a file that is refused
+    "attribute_bytes.stl": 3, "blank_before_solid.stl": 1, "end_loop.stl": 1,
+    "endfacet_color.stl": 1, "solid_binary_trailing.stl": 1, "solid_trailing.stl": 2,
+    "streamed_count.stl": 1, "solid_cut.stl": "expected 2 triangles, found 1 ",
+    "unnoticed_empty_loop.stl": ":11:1: error: expected three vertices before \"endloop\"",
+}
 SCENES = {"shells_specks.cpp": "shells_5.nff"}  # what a program reads
 
 
@@ -140,8 +148,8 @@ class Faults:
         status, said, values = self.render("patch_uv.nff")
         return status == 0 and "texture" in said and len(set(values)) > 3
 
-    def colour_ply(self):
-        values = self.render("colour.ply")[2]
+    def colour_ply(self, name="colour.ply"):
+        values = self.render(name)[2]
         pixels = list(zip(values[::3], values[1::3], values[2::3]))
         return all(any(p[i] > 3 * p[j] and p[i] > 3 * p[k] for p in pixels)
                    for i, j, k in ((0, 1, 2), (1, 0, 2), (2, 0, 1)))
@@ -156,6 +164,35 @@ class Faults:
     def int_far_ply(self):
         status, said, _ = self.render("turn4/int_far.ply")
         return status == 0 and "1 triangle;" in said and "left out" not in said
+
+    def closed_by_flat_triangle_ply(self):
+        info = json.loads(self.run("info", "--json",
+                                   self.folder / "turn5/closed_by_flat_triangle.ply").stdout)
+        return info["mesh"]["closed"] and info["kernel"]["triangles"] == 14
+
+    def rgb_names_ply(self):
+        return self.colour_ply("turn5/rgb_names.ply")
+
+    def smooth_soup_ply(self):
+        soup, shared, flat = (self.render(f"turn5/{name}.ply", *options)[2] for name, options in (
+            ("smooth_soup", ("--smooth", 60)), ("smooth_shared", ("--smooth", 60)),
+            ("smooth_soup", ())))
+        return len(soup) > 0 and soup == shared != flat
+
+    smooth_shared_ply = smooth_soup_ply
+
+    def stray_point_ply(self):
+        path = self.folder / "turn5/stray_point.ply"
+        info = json.loads(self.run("info", "--json", "--points", "auto", path).stdout)
+        return 100.4 < max(info["bounds"]["max"]) < 100.8
+
+    def stl_is_right(self, name):
+        """Read in full, and seen; or refused."""
+        status, said, values = self.render(f"turn5/{name}")
+        if isinstance(STL[name], str):
+            return status == 2 and STL[name] in said and said.count("\n") == 1
+        count = "1 triangle;" if STL[name] == 1 else f"{STL[name]} triangles;"
+        return status == 0 and count in said and len(set(values)) > 9
 
     def script_is_right(self, script, rule, words):
         """By Debian's Python, which its modules are for; a child that a signal ended is wrong."""
@@ -195,6 +232,8 @@ class Faults:
             return self.program_is_right(path)
         if path.suffix == ".py":
             return self.scripts_are_right(path)
+        if path.suffix == ".stl":
+            return path.name in STL and self.stl_is_right(path.name)
         check = getattr(self, re.sub(r"\W", "_", path.name), None)
         return check is not None and check()
 
@@ -206,7 +245,7 @@ def main():
         return 77
     faults, wrong = Faults(*sys.argv[1:]), 0
     for path in sorted(folder.rglob("*")):
-        if path.suffix not in (".nff", ".p3f", ".ply", ".cpp", ".py") or path.name in HELPERS:
+        if path.suffix not in SUFFIXES or path.name in HELPERS:
             continue
         if path.name in LATER:
             print(f"{path.name}: not right yet: {LATER[path.name]}")

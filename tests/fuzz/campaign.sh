@@ -1,5 +1,5 @@
 #!/bin/sh
-# campaign.sh BUILD MINUTES FOLDER [NAME...]: fuzzes the targets (nff ply partial options picture)
+# campaign.sh BUILD MINUTES FOLDER [NAME...]: fuzzes the targets (nff ply stl partial options picture)
 # in turns of ten minutes by the clock, one at a time, until each has had so many minutes of a
 # processor. A target that finds a fault gets no further turn; the input lies in FOLDER/NAME. New
 # inputs gather in FOLDER/NAME/corpus (tests/fuzz/corpus is only read) and minutes in
@@ -10,7 +10,7 @@ build=$(cd "$1" && pwd) minutes=$2
 mkdir -p "$3"
 out=$(cd "$3" && pwd) here=$(cd "$(dirname "$0")" && pwd)
 shift 3
-[ $# -gt 0 ] || set -- nff ply partial options picture
+[ $# -gt 0 ] || set -- nff ply stl partial options picture
 # who allocated is seldom asked, and dear to know
 export UBSAN_OPTIONS=print_stacktrace=1 ASAN_OPTIONS=malloc_context_size=2
 
