@@ -311,7 +311,7 @@ Orbit orbit(const std::string& text) {
 }
 
 void parse_background(const std::string& text, ViewOptions& view) {
-  constexpr const char* kExpected = "R,G,B, one number, #rrggbb or the name of a color";
+  constexpr const char* kExpected = "R,G,B, #rrggbb or a name such as white";
   view.background_is_encoded = true;
   view.background = screen_color(text);
   if (view.background)

@@ -1,8 +1,8 @@
 #!/bin/sh
-# campaign.sh BUILD MINUTES FOLDER [NAME...]: fuzzes the targets (nff ply stl partial options picture)
-# in turns of ten minutes by the clock, one at a time, until each has had so many minutes of a
-# processor. A target that finds a fault gets no further turn; the input lies in FOLDER/NAME. New
-# inputs gather in FOLDER/NAME/corpus (tests/fuzz/corpus is only read) and minutes in
+# campaign.sh BUILD MINUTES FOLDER [NAME...]: fuzzes the targets (nff ply stl partial options
+# picture) in turns of ten minutes by the clock, one at a time, until each has had so many minutes
+# of a processor. A target that finds a fault gets no further turn; the input lies in FOLDER/NAME.
+# New inputs gather in FOLDER/NAME/corpus (tests/fuzz/corpus is only read) and minutes in
 # FOLDER/NAME/spent, so that a campaign that was stopped goes on: begin in a fresh FOLDER, or remove
 # `spent`, to count anew for code that was mended.
 set -eu

@@ -96,5 +96,42 @@ TEST(Pages, HoldEveryOptionThatHelpShows) {
   EXPECT_EQ(bash.find("RADIUS"), std::string::npos) << "no value";
 }
 
+/// Words that other programs take, and options in the wrong place.
+TEST(Errors, HintAtWhatWasMeant) {
+  const std::pair<const char*, const char*> table[] = {
+      {"--quiet render a",
+       "expected a command before \"--quiet\": grelha render SCENE --quiet ... (see --help)"},
+      {"--size=4x4 render a",
+       "expected a command before \"--size=4x4\": grelha render SCENE --size ... (see --help)"},
+      {"-o a.png render a",
+       "expected a command before \"-o\": grelha render SCENE -o ... (see --help)"},
+      {"--json info a",
+       "expected a command before \"--json\": grelha info SCENE --json ... (see --help)"},
+      {"scene.nff",
+       "command: expected one of render, info, compare, merge, scene, found \"scene.nff\"; did you "
+       "mean grelha render scene.nff?"},
+      {"a/Part.STL.gz --size 2x2",
+       "command: expected one of render, info, compare, merge, scene, found \"a/Part.STL.gz\"; did "
+       "you mean grelha render a/Part.STL.gz?"},
+      {"render a --spp 4",
+       "render: expected an option, found \"--spp\"; did you mean --samples? (see --help)"},
+      {"render a --width=4",
+       "render: expected an option, found \"--width=4\"; did you mean --size? (see --help)"},
+      {"render a --gamma 2.2",
+       "render: expected an option, found \"--gamma\"; did you mean --srgb? (see --help)"},
+      {"render a -s 2x2",
+       "render: expected an option, found \"-s\"; did you mean --size? (see --help)"},
+      {"info a --spp 4", "info: expected an option, found \"--spp\" (see --help)"},
+      {"render a --background #ff00",
+       "--background: expected R,G,B, #rrggbb or a name such as white, found \"#ff00\""},
+      {"render a --background #gggggg",
+       "--background: expected R,G,B, #rrggbb or a name such as white, found \"#gggggg\""},
+      {"render a --background pinkish",
+       "--background: expected R,G,B, #rrggbb or a name such as white, found \"pinkish\""},
+  };
+  for (const auto& [line, message] : table)
+    EXPECT_EQ(test::error_of(line), message) << line;
+}
+
 }  // namespace
 }  // namespace grelha

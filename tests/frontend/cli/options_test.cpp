@@ -198,36 +198,6 @@ TEST(Others, AreParsed) {
   EXPECT_TRUE(std::get<SceneCommand>(parse("scene --list")).list);
 }
 
-TEST(Options, BackgroundInBytesOrLight) {
-  const auto view = [](const char* text) {
-    return std::get<RenderCommand>(parse("render a --background " + std::string(text))).input.view;
-  };
-  EXPECT_EQ(view("1,.5,0").background, (Float3{1, .5f, 0}));
-  EXPECT_FALSE(view("1,.5,0").background_is_encoded);
-  EXPECT_EQ(view("2").background, (Float3{2, 2, 2}));
-  for (const char* const red : {"#f00", "#F00", "#ff0000", "red", "Red"}) {
-    EXPECT_EQ(view(red).background, (Float3{1, 0, 0})) << red;
-    EXPECT_TRUE(view(red).background_is_encoded);
-  }
-  EXPECT_EQ(view("#336699").background, (Float3{.2f, .4f, .6f}));
-  EXPECT_EQ(view("#369").background, (Float3{.2f, .4f, .6f}));
-  EXPECT_EQ(view("white").background, (Float3{1, 1, 1}));
-  const auto warnings = [&](const char* text) {
-    std::string lines;
-    warn_of_background("s", view(text), [&](const std::string& line) { lines += line; });
-    return lines;
-  };
-  EXPECT_EQ(warnings("255,255,0"),
-            "s: warning: --background 255,255,0 is 255 times as bright as white, which is 1; "
-            "#rrggbb takes bytes");
-  for (const char* const usual : {"1,1,1", "1.5", "0", "#ffffff", "white"})
-    EXPECT_EQ(warnings(usual), "") << usual;
-  // where colours are light, the picture encodes them again
-  EXPECT_NEAR(with_background(view("#336699"), true).background->x, .0331048, 1e-6);
-  EXPECT_EQ(with_background(view("#336699"), false).background->x, .2f);
-  EXPECT_EQ(with_background(view(".2,0,0"), true).background->x, .2f);
-}
-
 struct Line {
   const char *line, *message;
 };
@@ -235,35 +205,6 @@ struct Line {
 const Line kWrong[] = {
     {"", "A subcommand is required (see --help)"},
     {"--hlp", "expected an option, found \"--hlp\"; did you mean --help? (see --help)"},
-    {"--quiet render a",
-     "expected a command before \"--quiet\": grelha render SCENE --quiet ... (see --help)"},
-    {"--size=4x4 render a",
-     "expected a command before \"--size=4x4\": grelha render SCENE --size ... (see --help)"},
-    {"-o a.png render a",
-     "expected a command before \"-o\": grelha render SCENE -o ... (see --help)"},
-    {"--json info a",
-     "expected a command before \"--json\": grelha info SCENE --json ... (see --help)"},
-    {"scene.nff",
-     "command: expected one of render, info, compare, merge, scene, found \"scene.nff\"; did you "
-     "mean grelha render scene.nff?"},
-    {"a/Part.STL.gz --size 2x2",
-     "command: expected one of render, info, compare, merge, scene, found \"a/Part.STL.gz\"; did "
-     "you mean grelha render a/Part.STL.gz?"},
-    {"render a --spp 4",
-     "render: expected an option, found \"--spp\"; did you mean --samples? (see --help)"},
-    {"render a --width=4",
-     "render: expected an option, found \"--width=4\"; did you mean --size? (see --help)"},
-    {"render a --gamma 2.2",
-     "render: expected an option, found \"--gamma\"; did you mean --srgb? (see --help)"},
-    {"render a -s 2x2",
-     "render: expected an option, found \"-s\"; did you mean --size? (see --help)"},
-    {"info a --spp 4", "info: expected an option, found \"--spp\" (see --help)"},
-    {"render a --background #ff00",
-     "--background: expected R,G,B, one number, #rrggbb or the name of a color, found \"#ff00\""},
-    {"render a --background #gggggg",
-     "--background: expected R,G,B, one number, #rrggbb or the name of a color, found \"#gggggg\""},
-    {"render a --background pinkish",
-     "--background: expected R,G,B, one number, #rrggbb or the name of a color, found \"pinkish\""},
     {"help rendr",
      "command: expected one of render, info, compare, merge, scene, found \"rendr\"; did you "
      "mean render?"},

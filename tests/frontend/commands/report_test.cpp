@@ -269,6 +269,9 @@ TEST(Info, ChecksMeshes) {
     return text.substr(from, text.find("needs") - from);
   };
   EXPECT_EQ(mesh_line(), "mesh          closed; oriented; edge-manifold\n");
+  file.counts = {.mesh = 4};  // of STL
+  EXPECT_EQ(mesh_line(), "mesh          closed; oriented; edge-manifold\n");
+  EXPECT_EQ(Json::parse(info_json(file, {}, grids))["mesh"]["closed"], true);
   t.a = {0, 0, 3, 3, 0};
   t.b = {2, 1, 0, 0, 0};
   t.c = {1, 3, 2, 2, 1};

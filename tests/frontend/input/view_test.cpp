@@ -303,8 +303,40 @@ TEST(ViewOptions, ThatCannotBeAreRefused) {
   EXPECT_EQ(error("--orbit 1e9,2"), "--orbit: expected degrees, at most 100 turns, found \"1e9\"");
   EXPECT_EQ(error("--orthographic 0"),
             "--orthographic: expected a height above 0 and up to 1e18, found \"0\"");
-  EXPECT_EQ(error("--background 1,2"), "--background: expected R,G,B, one number, #rrggbb or the name of a color, found \"1,2\"");
+  EXPECT_EQ(error("--background 1,2"),
+            "--background: expected R,G,B, #rrggbb or a name such as white, found \"1,2\"");
   EXPECT_EQ(error("--lights eye"), "--lights: expected one of camera, mesh, found \"eye\"");
+}
+
+TEST(ViewOptions, BackgroundInBytesOrLight) {
+  const auto view = [](const char* text) {
+    return std::get<RenderCommand>(test::parse("render a --background " + std::string(text)))
+        .input.view;
+  };
+  EXPECT_EQ(view("1,.5,0").background, (Float3{1, .5f, 0}));
+  EXPECT_FALSE(view("1,.5,0").background_is_encoded);
+  EXPECT_EQ(view("2").background, (Float3{2, 2, 2}));
+  for (const char* const red : {"#f00", "#F00", "#ff0000", "red", "Red"}) {
+    EXPECT_EQ(view(red).background, (Float3{1, 0, 0})) << red;
+    EXPECT_TRUE(view(red).background_is_encoded);
+  }
+  EXPECT_EQ(view("#336699").background, (Float3{.2f, .4f, .6f}));
+  EXPECT_EQ(view("#369").background, (Float3{.2f, .4f, .6f}));
+  EXPECT_EQ(view("white").background, (Float3{1, 1, 1}));
+  const auto warnings = [&](const char* text) {
+    std::string lines;
+    warn_of_background("s", view(text), [&](const std::string& line) { lines += line; });
+    return lines;
+  };
+  EXPECT_EQ(warnings("255,255,0"),
+            "s: warning: --background 255,255,0 is 255 times as bright as white, which is 1; "
+            "#rrggbb takes bytes");
+  for (const char* const usual : {"1,1,1", "1.5", "0", "#ffffff", "white"})
+    EXPECT_EQ(warnings(usual), "") << usual;
+  // where colours are light, the picture encodes them again
+  EXPECT_NEAR(with_background(view("#336699"), true).background->x, .0331048, 1e-6);
+  EXPECT_EQ(with_background(view("#336699"), false).background->x, .2f);
+  EXPECT_EQ(with_background(view(".2,0,0"), true).background->x, .2f);
 }
 
 }  // namespace
