@@ -18,13 +18,21 @@ Point3 moved(const Point3& a, double share, const Point3& b) {
   return {a[0] + share * b[0], a[1] + share * b[1], a[2] + share * b[2]};
 }
 
-/// Returns the vertices that triangles use, for others may lie anywhere, and the centres of balls.
+bool has_area(const Triangles& t, std::size_t i) {
+  const auto point = [&](std::uint32_t v) { return Float3{t.x[v], t.y[v], t.z[v]}; };
+  const Float3 a = point(t.a[i]);
+  return !is_zero(cross(difference(point(t.b[i]), a), difference(point(t.c[i]), a)));
+}
+
+/// Returns the vertices of triangles that are seen, for others may lie anywhere, and the centres of
+/// balls.
 std::vector<Point3> points_of(const Geometry& g) {
   const Triangles& t = g.triangles;
   std::vector<std::uint8_t> named(t.vertex_count());
-  for (const auto* of : {&t.a, &t.b, &t.c})
-    for (const std::uint32_t v : *of)
-      named[v] = 1;
+  for (std::size_t i = 0; i < t.size(); ++i)
+    if (has_area(t, i))
+      for (const auto* of : {&t.a, &t.b, &t.c})
+        named[(*of)[i]] = 1;
   std::vector<Point3> found;
   found.reserve(t.vertex_count());
   for (std::size_t v = 0; v < t.vertex_count(); ++v)

@@ -114,16 +114,17 @@ std::optional<StlLayout> exact_stl_layout(std::string_view bytes) {
 std::optional<StlLayout> loose_stl_layout(std::string_view bytes) {
   if (bytes.size() < kBegin)
     return {};
-  const std::uint64_t count = promised_stl_triangles(bytes);
-  const std::uint64_t most = most_stl_triangles(bytes);
+  const std::uint64_t count = promised_stl_triangles(bytes), most = most_stl_triangles(bytes);
   const bool unknown = count == 0 || count == kUnknown;
-  if (unknown)
-    return plain(has_plausible_triangle(bytes) ? most : 0);
-  const StlLayout lengths = with_lengths(bytes, count);
-  const bool all = lengths.triangles == count && is_plausible(bytes, lengths);
-  if (count > most)
+  if (unknown && !has_plausible_triangle(bytes))
+    return plain(0);
+  const StlLayout lengths = with_lengths(bytes, unknown ? kUnknown : count);
+  const bool all = unknown || lengths.triangles == count;
+  if (all && bytes.size() - lengths.end < kTriangle && is_plausible(bytes, lengths))
+    return lengths;
+  if (count > most && !unknown)
     return {};
-  return all && !is_plausible(bytes, plain(count)) ? lengths : plain(count);
+  return plain(unknown ? most : count);
 }
 
 void read_stl_binary(std::string_view bytes,

@@ -99,7 +99,7 @@ bool is_stl(std::string_view bytes) {
   const auto layout = exact_stl_layout(bytes);
   if (layout && layout->triangles > 0)
     return true;
-  return is_far_from_text(bytes) ? has_plausible_triangle(bytes) : begins_stl_text(bytes);
+  return (is_far_from_text(bytes) && has_plausible_triangle(bytes)) || begins_stl_text(bytes);
 }
 
 Mesh read_stl_mesh(const std::string& path,

@@ -63,6 +63,25 @@ TEST(PlyAlone, TrianglesWithoutAreaAreKept) {
   }
 }
 
+/// Nothing is seen of them, so a picture is the same without.
+TEST(PlyAlone, TrianglesWithoutAreaAreNotInView) {
+  const TemporaryFolder folder;
+  std::string vertices = kAsciiTriangle;
+  const std::string far = "element vertex 4";
+  vertices.replace(vertices.find("element vertex 3"), far.size(), far);
+  std::string one = vertices;
+  one.replace(one.find("face 2"), 6, "face 1");
+  const SceneFile with = read_scene(
+                      folder.add("a.ply",
+                                 vertices + "9 9 9\n0 0 0\n1 0 0\n0 1 0\n3 1 2 3\n3 0 1 0\n"),
+                      nullptr),
+                  without = read_scene(
+                      folder.add("b.ply", one + "9 9 9\n0 0 0\n1 0 0\n0 1 0\n3 1 2 3\n"), nullptr);
+  EXPECT_EQ(with.scene.geometry.triangles.size(), 2u);
+  EXPECT_EQ(with.camera.eye, without.camera.eye);
+  EXPECT_EQ(with.camera.at, without.camera.at);
+}
+
 TEST(PlyAlone, EmptyMeshHasAView) {
   const TemporaryFolder folder;
   const SceneFile file =

@@ -175,6 +175,19 @@ TEST(PlyColors, OfElementsByOtherNames) {
   EXPECT_EQ(mesh.red, std::vector<float>{1});
 }
 
+/// Those of vertices count where faces have some too; an element keeps the name that is another's.
+TEST(PlyColors, OfVerticesBeforeThoseOfFaces) {
+  const Mesh mesh = read_ply_mesh(
+      "m.ply",
+      "ply\nformat ascii 1.0\nelement faces 1\nproperty int r\nelement vertices 1\nproperty int "
+      "r\nelement face 1\nproperty list uchar int vertex_indices\nproperty uchar r\nproperty uchar "
+      "g\nproperty uchar b\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
+      "z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n7\n7\n"
+      "3 0 1 2 255 0 0\n0 0 0 0 0 255\n1 0 0 0 0 255\n0 1 0 0 0 255\n");
+  EXPECT_FALSE(mesh.colors_of_faces);
+  EXPECT_EQ(mesh.blue, std::vector<float>(3, 1));
+}
+
 /// A square of two triangles, red and green, both as faces have colours.
 const std::string kColoredFaces =
     "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float "

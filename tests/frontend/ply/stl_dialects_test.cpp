@@ -59,6 +59,7 @@ const std::vector<std::string> kChoices[kAxes] = {
      "color 1 0 0\n"},
     {"solid part",
      "solid",
+     "solid" + std::string(100, '\0'),
      "solid facet",
      "solid facet normal",
      "solid vertex 1",
@@ -226,6 +227,7 @@ std::set<std::string> binary_dialects() {
           longer.attribute = length;
           longer.has_lengths = true;
           all.insert(longer.bytes());
+          all.insert(longer.bytes() + '\n');
         }
       }
       one.count = 3;
@@ -236,6 +238,9 @@ std::set<std::string> binary_dialects() {
                                       std::string(50, ' '),
                                       std::string(1000, '\x1A')})
         all.insert(one.bytes() + more);
+      one.attribute = 1;  // a length that happens to end with the file
+      all.insert(one.bytes() + "end");
+      one.attribute = 0;
       one.big_endian = true;
       all.insert(one.bytes());
     }

@@ -180,6 +180,9 @@ TEST(Stl, WhatIsOddIsWarnedOf) {
   EXPECT_EQ(warnings(solid), "");
   EXPECT_EQ(warnings(solid.substr(0, solid.find("endsolid"))),
             "m.stl: warning: the file ends without \"endsolid\"\n");
+  EXPECT_EQ(warnings(solid + solid.substr(0, solid.find("endsolid"))),
+            "m.stl: warning: the file ends without \"endsolid\"\n");
+  EXPECT_EQ(warnings(solid + "written by x\n"), "");
   EXPECT_EQ(warnings("written by x\n" + solid),
             "m.stl:1:1: warning: no line of an STL file begins with \"written\"; such lines are "
             "skipped\n");

@@ -243,8 +243,8 @@ TEST(Points, AreAsLargeAsTheirNeighborsAreNear) {
       put(float(i % 30) / 4, float(i / 30) / 4, 0);
   };
   const auto doubled = [&](const auto& put) {
-    lattice(put);
-    lattice(put);
+    for (int i = 0; i < 4; ++i)
+      lattice(put);
     put(NAN, 0, 0);
   };
   const auto on_ball = [&](const auto& put) {
