@@ -53,8 +53,8 @@ std::string man_page(const std::vector<CommandHelp>& commands) {
     text += ".B grelha " + c.name + "\n.RI \"" + roff(c.usage) + " [\" OPTIONS ]\n.br\n";
   text +=
       ".B grelha\n.RB [ \\-\\-help | \\-\\-help\\-all | \\-V | \\-\\-version ]\n"
-      ".SH DESCRIPTION\nRenders scenes in NFF and the dialects built on it, and PLY meshes, each "
-      "also gzipped, to PNG, Radiance HDR, PFM or OpenEXR.\n"
+      ".SH DESCRIPTION\nRenders scenes in NFF and the dialects built on it, and PLY and STL "
+      "meshes, each also gzipped, to PNG, Radiance HDR, PFM or OpenEXR.\n"
       "Neither the number of threads nor the processor changes a bit of a picture.\n";
   for (const CommandHelp& c : commands) {
     std::string upper = c.name;
