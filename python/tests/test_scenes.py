@@ -77,8 +77,8 @@ class Files(unittest.TestCase):
 
     def test_warnings_are_pythons(self):
         with tempfile.TemporaryDirectory() as folder:
-            path = os.path.join(folder, "flat.ply")
-            pathlib.Path(path).write_text(ply(np.zeros((3, 3)), [[0, 1, 2]]))
+            path = os.path.join(folder, "far.ply")
+            pathlib.Path(path).write_text(ply(np.full((3, 3), np.inf), [[0, 1, 2]]))
             with self.assertWarnsRegex(UserWarning, "left out"):
                 grelha.read(path)
             with warnings.catch_warnings():
