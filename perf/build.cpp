@@ -23,6 +23,7 @@
 #include "frontend/input/read_scene.hpp"
 #include "perf/build/clock.hpp"
 #include "perf/build/embree_build.hpp"
+#include "perf/failed_run.hpp"
 #include "tests/support/same_grids.hpp"
 #include "perf/workloads.hpp"
 
@@ -166,8 +167,8 @@ class Silent : public benchmark::BenchmarkReporter {
   bool ReportContext(const Context&) override { return true; }
   void ReportRuns(const std::vector<Run>& runs) override {
     for (const Run& r : runs)
-      if (r.error_occurred)
-        std::fprintf(stderr, "%s: %s\n", r.benchmark_name().c_str(), r.error_message.c_str());
+      if (is_failed(r))
+        std::fprintf(stderr, "%s: %s\n", r.benchmark_name().c_str(), why_failed(r).c_str());
   }
 };
 

@@ -15,6 +15,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include "perf/failed_run.hpp"
 #include "perf/ray_sets.hpp"
 #include "perf/workloads.hpp"
 #include "tests/reference/reference.hpp"
@@ -137,9 +138,9 @@ class Table : public benchmark::ConsoleReporter {
   void ReportRuns(const std::vector<Run>& runs) override {
     ConsoleReporter::ReportRuns(runs);
     for (const Run& r : runs) {
-      if (r.error_occurred)
+      if (is_failed(r))
         failed = true;
-      if (r.error_occurred || r.run_type != Run::RT_Iteration)
+      if (is_failed(r) || r.run_type != Run::RT_Iteration)
         continue;
       const std::string name = r.run_name.function_name;  // scene/rung/M
       const std::size_t a = name.find('/'), b = name.rfind('/');

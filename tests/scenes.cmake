@@ -6,7 +6,7 @@ target_sources(image_file_test PRIVATE frontend/images/exr_file_test.cpp
   frontend/images/png_writing_test.cpp frontend/images/transparent_test.cpp
   frontend/files/atomic_file_test.cpp)
 find_package(ZLIB REQUIRED)
-target_link_libraries(image_file_test PRIVATE ZLIB::ZLIB OpenMP::OpenMP_CXX)
+target_link_libraries(image_file_test PRIVATE ZLIB::ZLIB)
 grelha_test(frontend/images/compare unit grelha::frontend)
 grelha_test(frontend/cli/options unit grelha::frontend)
 target_sources(options_test PRIVATE frontend/cli/option_checks_test.cpp
