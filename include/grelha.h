@@ -155,8 +155,8 @@ GRELHA_API grelha_status grelha_offset(const grelha_world* world, double offset[
 GRELHA_API grelha_status grelha_update(
     grelha_world* world, const float* points, ptrdiff_t stride, size_t count, int threads);
 
-/// The same of points in double, three doubles x y z each. They count from 0: the world subtracts
-/// its offset, which stays as it is.
+/// The same of points in double, three doubles x y z each. They count from 0. grelha_offset() then
+/// changes if it is more than four sizes of the points' box from the box's middle.
 GRELHA_API grelha_status grelha_update_double(
     grelha_world* world, const double* points, ptrdiff_t stride, size_t count, int threads);
 
@@ -229,9 +229,9 @@ GRELHA_API grelha_status grelha_mesh_of(const grelha_world* world,
                                         uint32_t* triangle);
 
 /// Moves the vertices of one mesh, as many as before; the indices are not read. Floats count from
-/// grelha_offset(), doubles from 0. Answers are those of a new world. Grids of others mostly stay.
-/// Errors are those of the function that made the world, and GRELHA_INVALID for a number that no
-/// mesh has and for worlds of spheres. The world is then as it was before.
+/// grelha_offset(), doubles from 0: they change it as grelha_update_double() of all would. Answers
+/// are those of a new world; grids of others mostly stay. Errors are those of making the world, and
+/// GRELHA_INVALID for a number that no mesh has and for spheres; the world is then as before.
 GRELHA_API grelha_status grelha_update_mesh(grelha_world* world,
                                             size_t number,
                                             const grelha_mesh* mesh,

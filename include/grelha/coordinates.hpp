@@ -67,11 +67,15 @@ class PointBounds {
   /// middle of the box is at most four of its sizes from the origin: floats then resolve a
   /// millionth of the size. Else it is the middle, rounded to multiples of a power of two that is
   /// at least the size: subtracting it costs no digit. Scene files that floats cannot hold count
-  /// from it as well.
-  std::array<double, 3> offset() const;
+  /// from it as well. For points that moved, `before` is the offset they had: it stays if the middle
+  /// is at most four sizes from it.
+  std::array<double, 3> offset(const std::array<double, 3>& before = {}) const;
 
  private:
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  std::array<double, 3> middle() const;
+  double size() const;  ///< the longest side
+  double distance(const std::array<double, 3>& point) const;  ///< from the middle, along an axis
   std::array<double, 3> low_{kInfinity, kInfinity, kInfinity};
   std::array<double, 3> high_{-kInfinity, -kInfinity, -kInfinity};
 };

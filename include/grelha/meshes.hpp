@@ -42,15 +42,17 @@ struct MeshRange {
 /// Throws std::invalid_argument for a number that no mesh has.
 MeshRange mesh_range(const OffsetScene& scene, std::size_t mesh);
 
-/// Replaces the vertices of one mesh by as many, and returns its triangles: what moved. Doubles
-/// have the offset subtracted, floats count from it. Throws BadNumber and std::invalid_argument,
-/// and then nothing has changed.
+/// Replaces the vertices of one mesh by as many, and returns the triangles that moved. Doubles have
+/// the offset subtracted, floats count from it. After doubles the offset is that of the PointBounds
+/// of all, see PointBounds::offset(): it stays unless floats from there would be too coarse. Where
+/// it changes, all vertices are rounded anew, and all triangles moved. Throws BadNumber and
+/// std::invalid_argument, and then nothing has changed.
 Object move_mesh(OffsetScene& scene, std::size_t mesh, const PointArray& vertices);
 /// Hides a mesh or shows it again. Ids stay. Throws std::invalid_argument for a number that no mesh
 /// has.
 void show_mesh(OffsetScene& scene, std::size_t mesh, bool visible);
-/// Appends a mesh, whose vertices count as those of move_mesh(), and returns its triangles. The
-/// others keep their numbers and ids. Throws BadNumber and std::invalid_argument, also for a scene
+/// Appends a mesh, whose vertices count as those of move_mesh(), and returns its triangles, or all
+/// where the offset changes. The others keep their numbers and ids. Throws BadNumber and std::invalid_argument, also for a scene
 /// with anything but triangles; then nothing has changed.
 Object add_mesh(OffsetScene& scene, const MeshArrays& mesh);
 

@@ -31,6 +31,9 @@ struct OffsetScene : Scene {
   /// of several meshes (meshes.hpp) the first vertex of each, and the number of vertices;
   /// geometry.objects are their triangles then; empty: one mesh
   std::vector<std::uint32_t> first_vertices{};
+  /// of several meshes in double x y z of all vertices as they were given: another offset rounds
+  /// them anew; empty: the offset + geometry.triangles
+  std::vector<double> doubles{};
 };
 
 /// Copies faces, each three indices below `vertices`, counter-clockwise from the front: triangles
@@ -52,6 +55,9 @@ Geometry spheres_of(std::span<const Number> radii);
 /// other shapes.
 OffsetScene scene_of(const PointArray& points, Geometry shapes);
 
+/// The coordinates of points, x y z of each.
+std::vector<double> doubles_of(const PointArray& points);
+
 /// A World and the scene that it refers to. Threads may share it while nobody moves or masks it.
 class OwningWorld {
  public:
@@ -66,8 +72,9 @@ class OwningWorld {
               std::span<const Object> moved)
       : scene_(std::move(scene)), world_(scene_, options, before.world_, moved) {}
 
-  /// Replaces the points that scene_of() was given, by as many: the same as building a new World,
-  /// bit for bit. Doubles have the offset subtracted, which stays as it is; floats count from it.
+  /// Replaces the points that scene_of() was given, by as many: the same as building a new World
+  /// with this offset, bit for bit. Of doubles the offset is PointBounds::offset(offset before), so
+  /// it stays unless floats from there would be too coarse; it is subtracted. Floats count from it.
   /// Throws what scene_of() and World's constructor throw. The world is then as it was.
   void move(const PointArray& points, const BuildOptions& options);
   /// Replaces the scene by one where the triangles of some objects moved or were added, or some

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "kernel/grid/used_points.hpp"
+
 namespace grelha {
 namespace {
 
@@ -108,15 +110,55 @@ Geometry triangles_of_mesh(const OffsetScene& scene, const MeshRange& mesh) {
   return own;
 }
 
-/// Writes vertices from a place on, in the frame of the scene.
-void put_vertices(OffsetScene& scene, std::size_t first, const PointArray& vertices) {
+constexpr std::ptrdiff_t kThreeDoubles = 3 * sizeof(double);
+
+/// All vertices as the caller gave them: what floats lost is needed where the offset changes.
+std::vector<double> all_doubles(const OffsetScene& scene) {
+  const Triangles& t = scene.geometry.triangles;
+  std::vector<double> all;
+  for (std::size_t i = 0; i < t.vertex_count(); ++i)
+    for (const double x : {scene.offset[0] + double{t.x[i]},
+                           scene.offset[1] + double{t.y[i]},
+                           scene.offset[2] + double{t.z[i]}})
+      all.push_back(x);
+  return all;
+}
+
+/// Returns whether the offset changed.
+bool choose_offset(OffsetScene& scene) {
   Triangles& t = scene.geometry.triangles;
+  const PointArray all(scene.doubles.data(), kThreeDoubles, t.vertex_count(), "vertices");
+  const auto offset = used_bounds(all, scene.geometry).offset(scene.offset);
+  if (offset == scene.offset)
+    return false;
+  scene.offset = offset;
   std::vector<float>* const axes[3] = {&t.x, &t.y, &t.z};
-  for (std::size_t a = 0; a < 3; ++a) {
-    const double offset = vertices.in_double ? scene.offset[a] : 0;
-    for (std::size_t i = 0; i < vertices.count; ++i)
-      (*axes[a])[first + i] = static_cast<float>(vertices.at(i, a) - offset);
-  }
+  for (std::size_t a = 0; a < 3; ++a)
+    for (std::size_t i = 0; i < all.count; ++i)
+      (*axes[a])[i] = static_cast<float>(all.at(i, a) - offset[a]);
+  return true;
+}
+
+/// Writes vertices of some triangles from a place on, in the frame of the scene. Returns what moved.
+Object put_vertices(OffsetScene& scene,
+                    std::size_t first,
+                    const PointArray& vertices,
+                    const Object& triangles) {
+  Triangles& t = scene.geometry.triangles;
+  if (vertices.in_double && scene.doubles.empty())
+    scene.doubles = all_doubles(scene);
+  scene.doubles.resize(scene.doubles.empty() ? 0 : 3 * t.vertex_count());
+  std::vector<float>* const axes[3] = {&t.x, &t.y, &t.z};
+  for (std::size_t a = 0; a < 3; ++a)
+    for (std::size_t i = 0; i < vertices.count; ++i) {
+      const double given = vertices.at(i, a), offset = scene.offset[a];
+      (*axes[a])[first + i] = static_cast<float>(vertices.in_double ? given - offset : given);
+      if (!scene.doubles.empty())
+        scene.doubles[3 * (first + i) + a] = vertices.in_double ? given : given + offset;
+    }
+  if (vertices.in_double && choose_offset(scene))
+    return {0, static_cast<std::uint32_t>(t.size())};
+  return triangles;
 }
 
 void expect_bare_triangles(const OffsetScene& scene) {
@@ -137,8 +179,12 @@ OffsetScene scene_of(std::span<const MeshArrays> meshes) {
     append_triangles(scene, checked(meshes[i], i).geometry.triangles, meshes[i].vertices.count);
     in_double |= meshes[i].vertices.in_double;
   }
-  return in_double ? with_vertices(std::move(scene), joined_vertices<double>(meshes))
-                   : with_vertices(std::move(scene), joined_vertices<float>(meshes));
+  if (!in_double)
+    return with_vertices(std::move(scene), joined_vertices<float>(meshes));
+  std::vector<double> all = joined_vertices<double>(meshes);
+  scene = with_vertices(std::move(scene), all);
+  scene.doubles = std::move(all);
+  return scene;
 }
 
 std::size_t mesh_count(const OffsetScene& scene) {
@@ -177,8 +223,7 @@ Object move_mesh(OffsetScene& scene, std::size_t mesh, const PointArray& vertice
                                 std::to_string(range.vertex_count) + ", found " +
                                 std::to_string(vertices.count));
   scene_of(vertices, triangles_of_mesh(scene, range));  // to refuse what is not finite
-  put_vertices(scene, range.first_vertex, vertices);
-  return range.triangles;
+  return put_vertices(scene, range.first_vertex, vertices, range.triangles);
 }
 
 void show_mesh(OffsetScene& scene, std::size_t mesh, bool visible) {
@@ -196,8 +241,7 @@ Object add_mesh(OffsetScene& scene, const MeshArrays& mesh) {
   Triangles& t = scene.geometry.triangles;
   for (std::vector<float>* const axis : {&t.x, &t.y, &t.z})
     axis->resize(first + mesh.vertices.count);
-  put_vertices(scene, first, mesh.vertices);
-  return added;
+  return put_vertices(scene, first, mesh.vertices, added);
 }
 
 }  // namespace grelha

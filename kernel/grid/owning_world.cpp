@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernel/grid/used_points.hpp"
 #include "kernel/grid/world_impl.hpp"
 
 namespace grelha {
@@ -22,22 +23,6 @@ struct Place {
   bad.row = at.row;
   bad.column = at.column;
   throw bad;
-}
-
-/// Calls visit(i) for each point that shapes use. Other vertices may be anything.
-template <class Visit>
-void each_used(const Geometry& shapes, std::size_t points, const Visit& visit) {
-  for (std::size_t i = 0; i < shapes.spheres.size(); ++i)
-    visit(i);
-  const Triangles& t = shapes.triangles;
-  std::vector<char> seen(t.a.empty() ? 0 : points);
-  for (const std::vector<std::uint32_t>* const corner : {&t.a, &t.b, &t.c})
-    for (const std::uint32_t vertex : *corner) {
-      if (vertex >= points)
-        throw std::invalid_argument("a triangle names a vertex that is not there");
-      if (!std::exchange(seen[vertex], 1))
-        visit(vertex);
-    }
 }
 
 void expect_one_kind(const Geometry& shapes, std::size_t points) {
@@ -128,6 +113,13 @@ Geometry spheres_of(std::span<const Number> radii) {
 template Geometry spheres_of(std::span<const float>);
 template Geometry spheres_of(std::span<const double>);
 
+std::vector<double> doubles_of(const PointArray& points) {
+  std::vector<double> all(3 * points.count);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    all[i] = points.at(i / 3, i % 3);
+  return all;
+}
+
 OffsetScene scene_of(const PointArray& points, Geometry shapes) {
   const PointBounds bounds = checked_bounds(points, shapes);
   OffsetScene scene;
@@ -145,8 +137,13 @@ void OwningWorld::move(const PointArray& points, const BuildOptions& options) {
   if (points.count != count)
     throw std::invalid_argument("count: expected as many points as before, " +
                                 std::to_string(count) + ", found " + std::to_string(points.count));
-  checked_bounds(points, g);
-  Axes axes = less(points, points.in_double ? scene_.offset : std::array<double, 3>{});
+  const PointBounds bounds = checked_bounds(points, g);
+  const bool in_double = points.in_double;
+  const auto offset = in_double ? bounds.offset(scene_.offset) : std::array<double, 3>{};
+  std::vector<double> doubles;
+  if (in_double && !scene_.first_vertices.empty())
+    doubles = doubles_of(points);
+  Axes axes = less(points, offset);
   swap_points(g, axes);
   try {
     world_.update(scene_, options);
@@ -154,6 +151,9 @@ void OwningWorld::move(const PointArray& points, const BuildOptions& options) {
     swap_points(g, axes);  // which the World still refers to
     throw;
   }
+  scene_.doubles = std::move(doubles);
+  if (in_double)
+    scene_.offset = offset;
 }
 
 void OwningWorld::replace(OffsetScene scene,

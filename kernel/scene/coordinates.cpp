@@ -25,22 +25,39 @@ void PointBounds::add(std::size_t axis, double value) {
   high_[axis] = std::max(high_[axis], value);
 }
 
-std::array<double, 3> PointBounds::offset() const {
+std::array<double, 3> PointBounds::middle() const {
   std::array<double, 3> middle{};
-  double size = 0;
-  double far = 0;
-  for (std::size_t a = 0; a < 3; ++a) {
+  for (std::size_t a = 0; a < 3; ++a)
     middle[a] = .5 * (low_[a] + high_[a]);
+  return middle;
+}
+
+double PointBounds::size() const {
+  double size = 0;
+  for (std::size_t a = 0; a < 3; ++a)
     size = std::max(size, high_[a] - low_[a]);
-    far = std::max(far, std::abs(middle[a]));
-  }
-  if (!(far > kMaxRatio * size) || far == kInfinity)
+  return size;
+}
+
+double PointBounds::distance(const std::array<double, 3>& point) const {
+  double far = 0;
+  for (std::size_t a = 0; a < 3; ++a)
+    far = std::max(far, std::abs(middle()[a] - point[a]));
+  return far;
+}
+
+std::array<double, 3> PointBounds::offset(const std::array<double, 3>& before) const {
+  const double near = kMaxRatio * size(), far = distance({});
+  if (!(distance(before) > near))
+    return before;
+  if (!(far > near) || far == kInfinity)
     return {};
   // no finer than doubles are there, if the size vanishes
-  const double step = std::ldexp(1, std::ilogb(std::max(size, 0x1p-30 * far)) + 1);
-  for (double& at : middle)
+  const double step = std::ldexp(1, std::ilogb(std::max(size(), 0x1p-30 * far)) + 1);
+  std::array<double, 3> offset = middle();
+  for (double& at : offset)
     at = step * std::nearbyint(at / step);
-  return middle;
+  return offset;
 }
 
 }  // namespace grelha

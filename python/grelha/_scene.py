@@ -4,9 +4,9 @@ from ._results import Surfaces
 from ._world import World, _expect_unmade
 
 
-def _restored(cls, state):
+def _restored(cls, state, masks=None):
     """A Scene as it was pickled."""
-    return cls._of(_grelha.scene_of(state))
+    return cls._of(_grelha.scene_of(state), masks)
 
 
 class Scene:
@@ -24,25 +24,40 @@ class Scene:
              number or (3,)), shine, transmission, ior, roughness
     """
 
-    __slots__ = ("_core", "__weakref__")
+    __slots__ = ("_first", "_shown", "_world", "__weakref__")
 
     def __init__(self, vertices, faces, *, colors=None, smooth=None, material=None, threads=0):
         _expect_unmade(self)
-        self._core = _grelha.scene_of_mesh(vertices, faces, colors, smooth, material, threads)
+        self._begin(_grelha.scene_of_mesh(vertices, faces, colors, smooth, material, threads))
 
     @classmethod
-    def _of(cls, core):
+    def _of(cls, core, masks=None):
         scene = cls.__new__(cls)
-        scene._core = core
+        scene._begin(core, masks)
         return scene
 
+    def _begin(self, core, masks=None):
+        self._first = core
+        self._world = World._of(core.core(), masks)
+        self._shown = self._world._core, core  # what was asked of which World
+
+    @property
+    def _core(self):
+        """The scene with its World as it is now."""
+        world, core = self._shown
+        if self._world._core is not world:
+            world = self._world._core
+            core = self._first.of_world(world)
+            self._shown = world, core
+        return core
+
     def __getattr__(self, name):  # only what is not there
-        if name == "_core":
+        if name in Scene.__slots__:
             raise TypeError("Scene: __init__() was not called")
         raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
 
     def __reduce__(self):
-        return _restored, (type(self), self._core.state())
+        return _restored, (type(self), self._core.state(), self.world.masks)
 
     def __repr__(self):
         view = self._core.camera()
@@ -51,18 +66,23 @@ class Scene:
 
     @property
     def world(self):
-        """A World of all primitives. Its update() does not change the Scene."""
-        return World._of(self._core.core())
+        """The World of all primitives, always the same one.
+
+        Pictures, surfaces() and camera_rays() show it as update(), update_mesh() and set_visible()
+        leave it; camera and lights stay where they are, and normals become those of smooth=180. Its
+        masks are for queries: pictures show all.
+        """
+        return self._world
 
     @property
     def vertices(self):
         """As of World."""
-        return self._core.core().vertices()
+        return self._world.vertices
 
     @property
     def faces(self):
         """As of World."""
-        return self._core.core().faces()
+        return self._world.faces
 
     @property
     def colors(self):

@@ -64,7 +64,9 @@ auto of_points(const Query& query) {
   };
 }
 
-void define_making(py::module_& module, py::class_<Core>& core) {
+using CoreClass = Counted<py::class_<Core>>;
+
+void define_making(Counted<py::module_> module, CoreClass core) {
   module.def("mesh", [](py::handle vertices, py::handle faces, py::handle threads) {
     const int count = threads_in(threads);
     return Core{built(mesh_parts(vertices, faces), count)};
@@ -107,7 +109,7 @@ void define_making(py::module_& module, py::class_<Core>& core) {
            [](const Core& self, py::handle masks) { return masks_in(masks, *self.model); });
 }
 
-void define_members(py::class_<Core>& core) {
+void define_members(CoreClass core) {
   core.def("vertices",
            [](const Core& self) { return rows_of(*self.model, self.model->geometry().triangles); });
   core.def("faces", [](const Core& self) {
@@ -128,8 +130,9 @@ void define_members(py::class_<Core>& core) {
 }  // namespace
 
 void define_core(py::module_& module) {
-  py::class_<Core> core(module, "Core");
-  define_making(module, core);
+  py::class_<Core> made(module, "Core");
+  CoreClass core(made);
+  define_making(Counted(module), core);
   define_members(core);
   core.def("closest", of_rays(closest_hits));
   core.def("occluded", of_rays(occluded_rays));

@@ -85,7 +85,54 @@ std::vector<Light> lights_in(py::handle given, const Frame& frame) {
   return lights;
 }
 
+/// The same view where the scene lies in another frame.
+View in_frame(View view, const Frame& from, const Frame& to) {
+  if (from == to)
+    return view;
+  const double scale = to.scale / from.scale;
+  const auto move = [&](Float3& point) { point = to.inside(from.outside(point)); };
+  const auto stretch = [&](Float3& edge) { edge = float(scale) * edge; };
+  for (Float3* const point : {&view.camera.eye, &view.camera.at, &view.extent.center})
+    move(*point);
+  for (double* const length : {&view.camera.aperture,
+                               &view.camera.focus,
+                               &view.camera.orthographic_height,
+                               &view.extent.radius,
+                               &view.extent.half_width,
+                               &view.extent.half_depth})
+    *length *= scale;
+  for (Light& light : view.lighting.lights) {
+    move(light.position);
+    stretch(light.edge1);
+    stretch(light.edge2);
+  }
+  return view;
+}
+
+/// A scene whose vertices moved with those normals that they had: now means of their faces'.
+void renew_normals(Triangles& t) {
+  const Triangles before = t;
+  for (std::vector<float>* const axis : {&t.nx, &t.ny, &t.nz})
+    axis->clear();
+  smooth_normals(t, 0, 180);
+  for (std::size_t i = 0; i < t.vertex_count(); ++i)
+    if (before.nx[i] == 0 && before.ny[i] == 0 && before.nz[i] == 0)
+      t.nx[i] = t.ny[i] = t.nz[i] = 0;
+}
+
 }  // namespace
+
+FileScene FileScene::of_world(const SharedModel& world) const {
+  FileScene scene = *this;
+  scene.view_ = in_frame(view_, model_->frame, world->frame);
+  scene.model_ = world;
+  if (world->geometry().triangles.nx.empty())
+    return scene;
+  ModelParts parts{world->scene(), world->frame.scale, world->in_double};
+  renew_normals(parts.scene.geometry.triangles);
+  scene.model_ = built(std::move(parts), 0, world.get());
+  return scene;
+}
 
 FileScene FileScene::of(SceneFile file, bool in_double, int threads) {
   FileScene scene;
@@ -272,7 +319,7 @@ void write_encoded(const std::string& name, Picture picture) {
   check_writable(name);
   const auto work = std::make_shared<std::pair<Picture, std::string>>(std::move(picture), "");
   hear_signals_beside([work] { work->second = encoded(work->first); });
-  const py::gil_scoped_release unlocked;
+  const Unlocked unlocked;
   write_file(name, work->second);
 }
 

@@ -41,6 +41,9 @@ class FileScene {
   /// Throws ValueError for what state() did not make.
   static FileScene of_state(const py::tuple& state);
 
+  /// The scene with its World as an update left it: seen from where it was, normals as they are now.
+  FileScene of_world(const SharedModel& world) const;
+
   const SharedModel& model() const { return model_; }
   py::dict camera() const;
   py::array_t<double> lights() const;

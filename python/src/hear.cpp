@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include <pthread.h>
 #include <unistd.h>
 
 #include <pybind11/pybind11.h>
@@ -44,34 +45,120 @@ class Done {
   bool done_ = false;
 };
 
+using Clock = std::chrono::steady_clock;
+
 /// Lets Python's handlers run, here, at most every kInterval.
 class Listener {
  public:
-  bool goes_on() {
+  bool goes_on(Unlocked& unlocked) {
     const Clock::time_point now = Clock::now();
     if (raised_ || now - heard_ < kInterval)
       return !raised_;
     heard_ = now;
-    const py::gil_scoped_acquire locked;
+    unlocked.lock();
     if (PyErr_CheckSignals() != 0)
       raised_.emplace();
+    unlocked.unlock();
     return !raised_;
   }
   const std::optional<py::error_already_set>& raised() const { return raised_; }
 
  private:
-  using Clock = std::chrono::steady_clock;
   Clock::time_point heard_ = Clock::now();
   std::optional<py::error_already_set> raised_;
 };
 
+/// Work that nobody waits for; of this process, for a forked one has no such thread.
+struct LeftWork {
+  pid_t process;
+  std::thread thread;
+};
+/// Python's lock guards it. Never destroyed: it is emptied when Python exits.
+std::vector<LeftWork>& left_work() {
+  static auto* const left = new std::vector<LeftWork>;
+  return *left;
+}
+
+/// Waits for work that went on alone: libraries that it uses end with the process.
+void finish_left_work() {
+  std::vector<LeftWork> left = std::exchange(left_work(), {});
+  const py::gil_scoped_release unlocked;
+  for (LeftWork& work : left)
+    if (work.process == getpid())
+      work.thread.join();
+    else
+      work.thread.detach();
+}
+
+constexpr std::chrono::milliseconds kAtEnd{250};  ///< in which Python ends, once it has begun to
+constexpr std::chrono::seconds kMostAtEnd{5};     ///< for which its end waits
+
+std::atomic<int> calls_with_lock = 0;  ///< under way, and not in an Unlocked
+std::atomic<Clock::rep> end_began = 0;
+std::atomic<std::thread::id> ending_thread{};
+
+/// Where Python has begun to end, waits for it to have ended. It may go on, for handlers of other
+/// modules want these threads.
+void wait_for_end() {
+  if (end_began == 0 || ending_thread.load() == std::this_thread::get_id())
+    return;
+  while (Clock::now() < Clock::time_point(Clock::duration(end_began)) + kAtEnd)
+    std::this_thread::sleep_for(kInterval);
+}
+
 }  // namespace
+
+CallUnderWay::CallUnderWay() {
+  ++calls_with_lock;
+  if (end_began != 0)
+    const Unlocked waits;
+}
+CallUnderWay::~CallUnderWay() {
+  --calls_with_lock;
+}
+
+void Unlocked::unlock() {
+  --calls_with_lock;
+  state_ = PyEval_SaveThread();
+}
+
+void Unlocked::lock() {
+  wait_for_end();
+  try {
+    PyEval_RestoreThread(std::exchange(state_, nullptr));
+  } catch (...) {  // of pthread_exit(), which Python calls when it has ended: never to be left
+    for (;;)
+      pause();
+  }
+  ++calls_with_lock;
+}
+
+namespace {
+
+/// Python calls it when it ends, while other threads can still have its lock.
+void finish_calls() {
+  ending_thread = std::this_thread::get_id();
+  end_began = Clock::now().time_since_epoch().count();
+  finish_left_work();
+  const py::gil_scoped_release unlocked;
+  const Clock::time_point began = Clock::now();
+  end_began = began.time_since_epoch().count();
+  while (calls_with_lock > 0 && Clock::now() - began < kMostAtEnd)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
+}  // namespace
+
+void count_calls() {
+  pthread_atfork(nullptr, nullptr, [] { calls_with_lock = 0; });  // the others are not there
+  py::module_::import("atexit").attr("register")(py::cpp_function(finish_calls));
+}
 
 void hear_signals(const std::function<void(const Progress&)>& work) {
   std::exception_ptr thrown;
   std::optional<py::error_already_set> raised;
   {
-    const py::gil_scoped_release unlocked;
+    Unlocked unlocked;
     std::atomic<bool> stop = false;
     Done done;
     std::thread worker([&] {
@@ -85,11 +172,12 @@ void hear_signals(const std::function<void(const Progress&)>& work) {
     while (!done.wait()) {
       if (stop)
         continue;
-      const py::gil_scoped_acquire locked;
+      unlocked.lock();
       if (PyErr_CheckSignals() != 0) {
         raised.emplace();
         stop = true;
       }
+      unlocked.unlock();
     }
     worker.join();
   }
@@ -104,28 +192,13 @@ void hear_signals(std::size_t count, const std::function<void(const Progress&)>&
     return hear_signals(work);
   Listener listener;
   try {
-    const py::gil_scoped_release unlocked;
-    work([&](double) { return listener.goes_on(); });
+    Unlocked unlocked;
+    work([&](double) { return listener.goes_on(unlocked); });
   } catch (const Stopped&) {
   }
   if (listener.raised())
     throw py::error_already_set(*listener.raised());
 }
-
-namespace {
-
-/// Work that nobody waits for; of this process, for a forked one has no such thread.
-struct LeftWork {
-  pid_t process;
-  std::thread thread;
-};
-/// Python's lock guards it. Never destroyed: it is emptied when Python exits.
-std::vector<LeftWork>& left_work() {
-  static auto* const left = new std::vector<LeftWork>;
-  return *left;
-}
-
-}  // namespace
 
 void hear_signals_beside(const std::function<void()>& work) {
   struct Run {
@@ -136,7 +209,7 @@ void hear_signals_beside(const std::function<void()>& work) {
   const auto run = std::make_shared<Run>();
   run->work = work;
   {
-    const py::gil_scoped_release unlocked;
+    Unlocked unlocked;
     std::thread worker([run] {
       try {
         run->work();
@@ -146,26 +219,17 @@ void hear_signals_beside(const std::function<void()>& work) {
       run->done.set();
     });
     while (!run->done.wait()) {
-      const py::gil_scoped_acquire locked;
-      if (PyErr_CheckSignals() == 0)
-        continue;
-      left_work().push_back({getpid(), std::move(worker)});
-      throw py::error_already_set();
+      unlocked.lock();
+      if (PyErr_CheckSignals() != 0) {
+        left_work().push_back({getpid(), std::move(worker)});
+        throw py::error_already_set();
+      }
+      unlocked.unlock();
     }
     worker.join();
   }
   if (run->thrown)
     std::rethrow_exception(run->thrown);
-}
-
-void finish_left_work() {
-  std::vector<LeftWork> left = std::exchange(left_work(), {});
-  const py::gil_scoped_release unlocked;
-  for (LeftWork& work : left)
-    if (work.process == getpid())
-      work.thread.join();
-    else
-      work.thread.detach();
 }
 
 }  // namespace grelha::python

@@ -1,9 +1,42 @@
 #pragma once
 // Work without Python's lock, which Ctrl-C stops.
 
+#include <cstddef>
 #include <functional>
 
+#include <Python.h>
+
 namespace grelha::python {
+
+/// A call of the module, from a thread that has Python's lock. When Python ends, it waits for those
+/// that have the lock, for it ends their threads, and C++ has things on their stacks.
+class CallUnderWay {
+ public:
+  CallUnderWay();
+  ~CallUnderWay();
+  CallUnderWay(const CallUnderWay&) = delete;
+};
+
+/// Python's lock, given back while this lives. A thread that wants it again when Python has ended
+/// stays here for good, as in Python 3.14: earlier ones end it by pthread_exit(), which no
+/// destructor survives.
+class Unlocked {
+ public:
+  Unlocked() { unlock(); }
+  ~Unlocked() {
+    if (state_)
+      lock();
+  }
+  Unlocked(const Unlocked&) = delete;
+  void lock();    ///< takes the lock for a time; an exception may end it then
+  void unlock();  ///< gives it back again
+
+ private:
+  PyThreadState* state_ = nullptr;  ///< null while this thread has the lock
+};
+
+/// Has Python call finish_calls() when it ends.
+void count_calls();
 
 /// What long work asks whether to go on: BuildOptions::progress and the like.
 using Progress = std::function<bool(double)>;
@@ -20,8 +53,5 @@ void hear_signals(std::size_t count, const std::function<void(const Progress&)>&
 /// The same for work that cannot be asked to stop. If a handler raises, the work goes on alone, and
 /// nobody sees what it does: it must own all that it reads and writes.
 void hear_signals_beside(const std::function<void()>& work);
-/// Waits for work that went on alone: libraries that it uses end with the process. Python calls it
-/// when it exits.
-void finish_left_work();
 
 }  // namespace grelha::python

@@ -31,11 +31,40 @@ std::size_t mesh_in(py::handle mesh, const Model& model, const char* method) {
   return std::size_t(whole_number_in(mesh, "mesh", 0, count - 1));
 }
 
+/// Vertices of one mesh as move_mesh() and add_mesh() take them, among those of a model before.
+class VerticesAmong {
+ public:
+  VerticesAmong(const Triples& given, const Model& before) {
+    in_double = before.in_double || given.in_double();
+    if (before.frame.scale != 1) {  // of a file: they count from its frame, which stays
+      in_double = before.in_double;
+      in_frame_ = given.in_frame(before.frame);
+      array = PointArray(std::span<const Float3>(in_frame_));
+      array.name = "vertices";
+    } else if (in_double) {  // floats too count from 0 for a caller
+      doubles_ = doubles_of(given.points());
+      array = PointArray(doubles_.data(), 3 * sizeof(double), given.count(), "vertices");
+    } else {
+      array = given.points();
+    }
+  }
+  VerticesAmong(const VerticesAmong&) = delete;
+
+  PointArray array;
+  bool in_double;  ///< of the model with them
+
+ private:
+  std::vector<Float3> in_frame_;
+  std::vector<double> doubles_;
+};
+
 }  // namespace
 
 ModelParts joined_parts(py::handle vertices, py::handle faces, py::handle given) {
   const py::array_t<std::int64_t> counts = whole_numbers(given, "counts", "(meshes, 2)");
   ModelParts parts = mesh_parts(vertices, faces);
+  if (parts.in_double)
+    parts.scene.doubles = doubles_of(vertices_in(vertices).points());
   parts.scene.first_vertices = {0};
   std::uint32_t first_face = 0;
   for (py::ssize_t i = 0; i < counts.shape(0); ++i) {
@@ -57,13 +86,9 @@ SharedModel mesh_moved(const Model& before, py::handle mesh, py::handle vertices
                 "as many as before, shape (" + std::to_string(range.vertex_count) + ", 3)",
                 text_of(points.full_shape()));
   parts_of(points, faces_of(before.geometry().triangles, range));  // to refuse what is not finite
-  ModelParts parts{before.scene(), before.frame.scale, before.in_double};
-  const std::vector<Float3> own = points.in_frame(before.frame);  // may be too large there
-  const Object moved = move_mesh(
-      parts.scene,
-      number,
-      PointArray(
-          reinterpret_cast<const float*>(own.data()), sizeof(Float3), own.size(), "vertices"));
+  const VerticesAmong placed(points, before);
+  ModelParts parts{before.scene(), before.frame.scale, placed.in_double};
+  const Object moved = move_mesh(parts.scene, number, placed.array);
   return built(std::move(parts), threads, &before, {&moved, 1});
 }
 
@@ -78,17 +103,13 @@ SharedModel mesh_added(const Model& before, py::handle vertices, py::handle face
     throw py::value_error("add_mesh: expected a World of triangles alone");
   const ModelParts added = mesh_parts(vertices, faces);
   const Triples points = vertices_in(vertices);
-  std::vector<float> own;
-  for (const Float3& p : points.in_frame(before.frame))
-    own.insert(own.end(), {p.x, p.y, p.z});
+  const VerticesAmong placed(points, before);
   const Triangles& t = added.scene.geometry.triangles;
   std::vector<std::array<std::uint32_t, 3>> corners;
   for (std::size_t i = 0; i < t.size(); ++i)
     corners.push_back({t.a[i], t.b[i], t.c[i]});
-  ModelParts parts{before.scene(), before.frame.scale, before.in_double};
-  const Object moved =
-      add_mesh(parts.scene,
-               {PointArray(own.data(), 3 * sizeof(float), points.count(), "vertices"), corners});
+  ModelParts parts{before.scene(), before.frame.scale, placed.in_double};
+  const Object moved = add_mesh(parts.scene, {placed.array, corners});
   return built(std::move(parts), threads, &before, {&moved, 1});
 }
 

@@ -101,17 +101,20 @@ ModelParts moved_parts(const Model& before, py::handle vertices, py::handle radi
     wrong_value("vertices",
                 "as many as before, shape (" + std::to_string(count) + ", 3)",
                 text_of(points.full_shape()));
-  if (!radii.is_none())
-    return parts_of(points, spheres_in(radii, points.shape()));
-  Geometry same;
-  for (const float radius : old.spheres.radius)
-    same.spheres.radius.push_back(as_float(radius / before.frame.scale));
-  same.triangles.a = old.triangles.a;
-  same.triangles.b = old.triangles.b;
-  same.triangles.c = old.triangles.c;
+  Geometry same;  // and its looks, which Scene shows
+  same.triangles = old.triangles;
   same.objects = old.objects;
+  if (!radii.is_none())
+    same.spheres = spheres_in(radii, points.shape()).spheres;
+  else
+    for (const float radius : old.spheres.radius)
+      same.spheres.radius.push_back(as_float(radius / before.frame.scale));
+  same.spheres.material = old.spheres.material;
   ModelParts parts = parts_of(points, std::move(same));
+  parts.scene.materials = before.scene().materials;
   parts.scene.first_vertices = before.scene().first_vertices;
+  if (parts.in_double && !parts.scene.first_vertices.empty())
+    parts.scene.doubles = doubles_of(points.points());
   return parts;
 }
 

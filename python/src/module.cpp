@@ -13,5 +13,5 @@ PYBIND11_MODULE(_grelha, module) {
 #ifdef GRELHA_SCENES
   define_scene(module);
 #endif
-  py::module_::import("atexit").attr("register")(py::cpp_function(finish_left_work));
+  count_calls();
 }

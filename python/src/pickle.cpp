@@ -47,6 +47,8 @@ py::tuple state_of(const Model& model) {
     if (!values.empty())
       arrays[name] = py::array_t<T>(py::ssize_t(values.size()), values.data());
   });
+  if (const std::vector<double>& all = model.scene().doubles; !all.empty())
+    arrays["doubles"] = py::array_t<double>(py::ssize_t(all.size()), all.data());
   const std::vector<Object>& objects = model.geometry().objects;
   std::vector<std::uint32_t> ranges;
   for (const Object& o : objects)
@@ -97,6 +99,10 @@ ModelParts parts_of_state(const py::tuple& state) {
       (first.size() != g.objects.size() + 1 || first.front() != 0 ||
        first.back() != g.triangles.vertex_count() || !std::is_sorted(first.begin(), first.end())))
     throw py::value_error("state: expected vertices of each mesh");
+  if (arrays.contains("doubles"))
+    parts.scene.doubles = vector_of<double>(arrays["doubles"]);
+  if (const std::size_t all = parts.scene.doubles.size(); all != 0 && all != 3 * g.triangles.vertex_count())
+    throw py::value_error("state: expected three doubles of each vertex");
   return parts;
 }
 

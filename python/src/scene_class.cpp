@@ -29,8 +29,9 @@ ViewArguments view_in(const py::tuple& v) {
 
 }  // namespace
 
-void define_scene(py::module_& module) {
+void define_scene(py::module_& into) {
   py::register_exception_translator(translate);
+  Counted module(into);
   module.def(
       "scene_of_mesh",
       [](py::handle vertices,
@@ -52,9 +53,12 @@ void define_scene(py::module_& module) {
                    path, meshes_in(colors, points, smooth), material, threads_in(threads));
              });
   module.def("scene_of", &FileScene::of_state);
-  py::class_<FileScene> scene(module, "SceneCore");
+  py::class_<FileScene> made(into, "SceneCore");
+  Counted scene(made);
   scene.def("state", &FileScene::state);
   scene.def("core", [](const FileScene& self) { return Core{self.model()}; });
+  scene.def("of_world",
+            [](const FileScene& self, const Core& world) { return self.of_world(world.model); });
   scene.def("camera", &FileScene::camera);
   scene.def("lights", &FileScene::lights);
   scene.def("colors", &FileScene::colors);

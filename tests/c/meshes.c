@@ -163,6 +163,28 @@ static void test_offsets(void) {
   grelha_free(world);
 }
 
+/// The offset of a world that held nothing, or something else, follows what it holds.
+static void test_offset_follows(void) {
+  double corners[3 * kCorners], offset[3];
+  for (int i = 0; i < 3 * kCorners; ++i)
+    corners[i] = cube_corners[i] + 5e6;
+  grelha_mesh cube = cube_mesh();
+  grelha_world* worlds[] = {NULL, NULL, new_cube()};
+  CHECK_OK(grelha_new_meshes(NULL, 0, 1, &worlds[0]));
+  CHECK_OK(grelha_new_meshes(&cube, 1, 1, &worlds[1]));
+  cube.vertices = NULL;
+  cube.doubles = corners;
+  cube.stride = 24;
+  CHECK_OK(grelha_add_mesh(worlds[0], &cube, 1, NULL));
+  CHECK_OK(grelha_update_mesh(worlds[1], 0, &cube, 1));
+  CHECK_OK(grelha_update_double(worlds[2], corners, 24, kCorners, 1));
+  for (int i = 0; i < 3; ++i) {
+    CHECK_OK(grelha_offset(worlds[i], offset));
+    CHECK(fabs(offset[0] - 5e6) < 8 && fabs(offset[2] - 5e6) < 8);
+    grelha_free(worlds[i]);
+  }
+}
+
 void test_meshes(void) {
   sheet* const sheets = malloc(2 * sizeof *sheets);
   fill_sheet(&sheets[0], 0, 0, -3);
@@ -177,6 +199,7 @@ void test_meshes(void) {
   test_visible(world);
   test_additions(world);
   test_offsets();
+  test_offset_follows();
   grelha_free(world);
   CHECK_OK(grelha_new_meshes(NULL, 0, 1, &world));
   float t = 0;

@@ -246,6 +246,55 @@ TEST(Meshes, InDoubleHaveOneOffset) {
   EXPECT_EQ(scene.geometry.triangles.x[3], 8);
 }
 
+/// Squares of a survey: the sums are no floats.
+std::vector<double> square(double x, double y) {
+  return {x - .37, y - .37, 0, x + .37, y - .37, 0, x + .37, y + .37, 0, x - .37, y + .37, 0};
+}
+PointArray points_of(const std::vector<double>& square) {
+  return {square.data(), 24, square.size() / 3, "vertices"};
+}
+
+/// Whoever comes or goes, the offset is one that floats resolve the scene from, and vertices are
+/// rounded once.
+TEST(Meshes, InDoubleAreRoundedAsInANewWorld) {
+  constexpr double kX = 431234.123, kY = 4583210.321;
+  const std::vector<std::array<std::uint32_t, 3>> faces = {{0, 1, 2}, {0, 2, 3}};
+  const std::vector<double> near[] = {square(0, .1), square(1, 0)},
+                            far[] = {square(kX, kY), square(kX + 1, kY + .1)};
+  const auto together = [&](const std::vector<double>& a, const std::vector<double>& b) {
+    return scene_of(std::vector<MeshArrays>{{points_of(a), faces}, {points_of(b), faces}});
+  };
+  const auto expect_same = [](const OffsetScene& a, const OffsetScene& b) {
+    EXPECT_EQ(a.offset, b.offset);
+    EXPECT_EQ(a.geometry.triangles.x, b.geometry.triangles.x);
+    EXPECT_EQ(a.geometry.triangles.y, b.geometry.triangles.y);
+  };
+  const OffsetScene end = together(far[0], far[1]);
+  OffsetScene moved = together(near[0], near[1]);
+  OwningWorld world(moved, {});
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Object all = move_mesh(moved, i, points_of(far[i]));
+    EXPECT_EQ(all.triangle_count, i == 0 ? 2u : 4u) << "with a new offset all have moved";
+    world.replace(moved, {}, {&all, 1});
+    EXPECT_TRUE(same_grids(world.world(), World(moved, {})));
+  }
+  expect_same(moved, end);
+  OffsetScene added = scene_of(std::span<const MeshArrays>{});
+  for (const std::vector<double>& one : far)
+    add_mesh(added, {points_of(one), faces});
+  expect_same(added, end);
+  std::vector<double> both = far[0];
+  both.insert(both.end(), far[1].begin(), far[1].end());
+  OwningWorld updated(together(near[0], near[1]), {});
+  updated.move(points_of(both), {});
+  expect_same(updated.scene(), end);
+  const std::vector<double> back[] = {square(9e6, 1), square(9e6 + 1, 1)};
+  OffsetScene again = updated.scene();
+  for (std::size_t i = 0; i < 2; ++i)
+    move_mesh(again, i, points_of(back[i]));
+  expect_same(again, together(back[0], back[1]));
+}
+
 template <class Work>
 std::string refusal(const Work& work) {
   try {
