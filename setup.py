@@ -20,7 +20,8 @@ setup(
     description="Rays through triangles and spheres, from numpy arrays",
     license="MIT",
     python_requires=">=3.9",
-    install_requires=["numpy"],
+    # pybind11 before 2.12 cannot read arrays of numpy 2
+    install_requires=["numpy" if pybind11.version_info >= (2, 12) else "numpy<2"],
     packages=["grelha"],
     package_dir={"": "python"},
     package_data={"grelha": ["*.pyi", "py.typed"]},

@@ -301,12 +301,12 @@ double smoothness(const std::string& text) {
 }
 
 Orbit orbit(const std::string& text) {
-  constexpr const char* kExpected = "AZIMUTH,ELEVATION or AZIMUTH,ELEVATION,ZOOM";
-  const auto p = parts("--orbit", text, 2, 3, kExpected);
+  constexpr const char* kExpected = "AZIMUTH, AZIMUTH,ELEVATION or AZIMUTH,ELEVATION,ZOOM";
+  const auto p = parts("--orbit", text, 1, 3, kExpected);
   const auto turn = [](double v) { return std::abs(v) <= kMostTurn; };
   const auto is_zoom = [](double v) { return v >= kLeastZoom && v <= kMostZoom; };
   return {fitting<double>("--orbit", p[0], "degrees, at most 100 turns", turn),
-          fitting<double>("--orbit", p[1], "degrees, at most 100 turns", turn),
+          p.size() < 2 ? 0 : fitting<double>("--orbit", p[1], "degrees, at most 100 turns", turn),
           p.size() < 3 ? 1 : fitting<double>("--orbit", p[2], "a zoom of .001 to 1000", is_zoom)};
 }
 

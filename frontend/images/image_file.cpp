@@ -197,20 +197,19 @@ bool image_fits(ImageFormat format, int width, int height, int channels) {
   return in_range && (!by_stb || (channels * std::int64_t(width) + 1) * height <= kStbBytes);
 }
 
+std::string encode_png(
+    std::span<const std::uint8_t> pixels, int width, int height, Tone tone, const Notes& notes) {
+  const int row = int(pixels.size() / std::size_t(height));
+  std::string bytes;
+  if (!stbi_write_png_to_func(append, &bytes, width, height, row / width, pixels.data(), row))
+    throw std::bad_alloc();
+  return with_chunks(bytes, tone, notes);
+}
+
 std::string encode_png(const Image& image, Tone tone, const Notes& notes, const Alpha& alpha) {
   const std::vector<std::uint8_t> pixels =
       alpha.empty() ? to_bytes(image, tone) : to_bytes(image, tone, alpha);
-  const int channels = alpha.empty() ? 3 : 4;
-  std::string bytes;
-  if (!stbi_write_png_to_func(append,
-                              &bytes,
-                              image.width,
-                              image.height,
-                              channels,
-                              pixels.data(),
-                              channels * image.width))
-    throw std::bad_alloc();
-  return with_chunks(bytes, tone, notes);
+  return encode_png(pixels, image.width, image.height, tone, notes);
 }
 
 std::string encode_pfm(const Image& image) {

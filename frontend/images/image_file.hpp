@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -34,6 +35,12 @@ std::string encode_png(const Image& image,
                        Tone tone,
                        const Notes& notes = {},
                        const Alpha& alpha = {});
+/// A PNG of these bytes, rows of 3 or 4 channels.
+std::string encode_png(std::span<const std::uint8_t> pixels,
+                       int width,
+                       int height,
+                       Tone tone,
+                       const Notes& notes = {});
 std::string encode_pfm(const Image& image);
 
 /// Writes the file whole or not at all, or to stdout. Throws FileError.

@@ -1,5 +1,6 @@
 from os import PathLike
-from typing import Any, Iterable, Literal, NamedTuple, Sequence, TypedDict, Union, overload
+from typing import (Any, Iterable, Literal, NamedTuple, Sequence, SupportsIndex, TypedDict, Union,
+                    overload)
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,6 +18,12 @@ class Hits(NamedTuple):
     u: NDArray[np.float32]
     v: NDArray[np.float32]
     face: NDArray[np.int64]
+    @overload  # type: ignore[override]
+    def __getitem__(self, index: SupportsIndex) -> NDArray[Any]: ...
+    @overload
+    def __getitem__(self, index: slice) -> tuple[NDArray[Any], ...]: ...
+    @overload
+    def __getitem__(self, index: NDArray[Any] | list[Any] | tuple[Any, ...]) -> Hits: ...
 
 class _Hit(NamedTuple):  # Hits of one ray
     t: float
@@ -40,6 +47,12 @@ class ClosestPoints(NamedTuple):
     points: NDArray[Any]
     distance: NDArray[np.float32]
     id: NDArray[np.int64]
+    @overload  # type: ignore[override]
+    def __getitem__(self, index: SupportsIndex) -> NDArray[Any]: ...
+    @overload
+    def __getitem__(self, index: slice) -> tuple[NDArray[Any], ...]: ...
+    @overload
+    def __getitem__(self, index: NDArray[Any] | list[Any] | tuple[Any, ...]) -> ClosestPoints: ...
 
 class _ClosestPoint(NamedTuple):  # ClosestPoints of one point
     points: NDArray[Any]
@@ -65,6 +78,8 @@ class MeshCheck(NamedTuple):
     @property
     def oriented(self) -> bool: ...
     @property
+    def manifold(self) -> bool: ...
+    @property
     def edge_manifold(self) -> bool: ...
 
 class Surfaces(NamedTuple):
@@ -72,6 +87,12 @@ class Surfaces(NamedTuple):
     normals: NDArray[np.float32]
     colors: NDArray[np.float32]
     id: NDArray[np.int64]
+    @overload  # type: ignore[override]
+    def __getitem__(self, index: SupportsIndex) -> NDArray[Any]: ...
+    @overload
+    def __getitem__(self, index: slice) -> tuple[NDArray[Any], ...]: ...
+    @overload
+    def __getitem__(self, index: NDArray[Any] | list[Any] | tuple[Any, ...]) -> Surfaces: ...
 
 class World:
     def __init__(self, vertices: ArrayLike, faces: ArrayLike, *, threads: int = ...) -> None: ...

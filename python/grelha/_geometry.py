@@ -22,9 +22,16 @@ def shown(given):
     return repr(given) if isinstance(given, (int, float, np.number)) else type(given).__name__
 
 
+def flag(given, name):
+    """True or False, 1 or 0. Raises TypeError for others: "no" would count as True."""
+    if isinstance(given, (bool, np.bool_, int, np.integer)) and given in (0, 1):
+        return bool(given)
+    raise TypeError(f"{name}: expected True or False, found {shown(given)}")
+
+
 def whole_number(given, name, least, wanted):
     """A whole number as an int. Raises TypeError or ValueError: expected `wanted`."""
-    if isinstance(given, np.ndarray) or not hasattr(type(given), "__index__"):
+    if isinstance(given, (np.ndarray, bool)) or not hasattr(type(given), "__index__"):
         raise TypeError(f"{name}: expected {wanted}, found {shown(given)}")
     if given.__index__() < least:
         raise ValueError(f"{name}: expected {wanted}, found {shown(given)}")

@@ -1,14 +1,28 @@
 """What World's methods give back."""
 from typing import Any, NamedTuple
 
+import numpy as np
+
+
+def _part(self, index):
+    """A member by its number, as of any tuple, or by an array the answers of these rays."""
+    if not isinstance(index, (np.ndarray, list, tuple)):
+        return tuple.__getitem__(self, index)
+    return type(self)(*(np.asarray(member)[index] for member in self))
+
 
 class Hits(NamedTuple):
-    """Nearest hits: arrays with one element for each ray, or plain numbers for one ray."""
+    """Nearest hits: arrays with one element for each ray, or plain numbers for one ray.
+
+    hits[mask] or hits[indices], of arrays, are those of some rays.
+    """
     t: Any  # float32; inf without a hit
     id: Any  # int64; -1 without a hit
     u: Any  # float32
     v: Any  # float32
     face: Any  # int64; -1 without a triangle
+
+    __getitem__ = _part
 
 
 class HitLists(NamedTuple):
@@ -31,6 +45,8 @@ class ClosestPoints(NamedTuple):
     points: Any  # float64 or float32 (..., 3)
     distance: Any  # float32; inf where there is none
     id: Any  # int64; -1 where there is none
+
+    __getitem__ = _part
 
 
 class Findings(NamedTuple):
@@ -62,9 +78,11 @@ class MeshCheck(NamedTuple):
         return self.inconsistent_edges.count == 0
 
     @property
-    def edge_manifold(self):
-        """True if no edge has more than two triangles."""
+    def manifold(self):
+        """True if no edge has more than two triangles. Meshes may still touch in a vertex."""
         return self.nonmanifold_edges.count == 0
+
+    edge_manifold = manifold
 
 
 class Surfaces(NamedTuple):
@@ -73,3 +91,5 @@ class Surfaces(NamedTuple):
     normals: Any  # float32 (..., 3)
     colors: Any  # float32 (..., 3)
     id: Any  # int64; -1 without a hit
+
+    __getitem__ = _part

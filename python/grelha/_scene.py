@@ -1,5 +1,6 @@
 """Scene: what is rendered, and the functions that read and write files."""
 from . import _grelha
+from ._geometry import flag
 from ._results import Surfaces
 from ._world import World, _expect_unmade
 
@@ -113,13 +114,13 @@ class Scene:
         eye, at, up     (3,) where the camera is, what it looks at, what is up; None: as the scene
                         says
         angle           vertical field of view, degrees
-        orbit           (azimuth, elevation) or (azimuth, elevation, zoom): from there so many
-                        degrees to the right and up around what the view shows; zoom divides the
-                        angle
+        orbit           azimuth, (azimuth, elevation) or (azimuth, elevation, zoom): from there so
+                        many degrees to the right and up around what the view shows; zoom divides
+                        the angle
         orthographic    parallel rays: the height that the picture shows, scene units
-        lights          (n, 2, 3), a position and a colour each; None: the scene's. Those of a bare
-                        mesh move with the camera, unless lights=scene.lights holds them.
-        background      (3,) light of rays that hit nothing
+        lights          (n, 2, 3), a position and a colour each; []: none; None: the scene's. Those
+                        of a bare mesh move with the camera, unless lights=scene.lights holds them.
+        background      (3,) light of rays that hit nothing, or one number: grey
         transparent     True leaves the background out: (height, width, 4), the colours times alpha,
                         the share of samples that hit something. Not with error=.
         threads         0: one for each processor. The number changes no bit of the picture.
@@ -127,7 +128,8 @@ class Scene:
         Raises TypeError or ValueError that names the argument, and KeyboardInterrupt.
         """
         view = (width, height, eye, at, up, angle, orbit, orthographic, lights, background)
-        return self._core.render(view, samples, error, seed, depth, bool(transparent), threads)
+        transparent = flag(transparent, "transparent")
+        return self._core.render(view, samples, error, seed, depth, transparent, threads)
 
     def camera_rays(self, width=None, height=None, *, eye=None, at=None, up=None, angle=None,
                     orbit=None, orthographic=None):
@@ -166,17 +168,19 @@ def read(path, *, colors=True, points=None, smooth=None, material=None, threads=
     Its warnings are UserWarnings. Raises OSError for what cannot be read, ValueError with file,
     line and column for what is no scene.
     """
-    return Scene._of(_grelha.scene_of_file(path, bool(colors), points, smooth, material, threads))
+    colors = flag(colors, "colors")
+    return Scene._of(_grelha.scene_of_file(path, colors, points, smooth, material, threads))
 
 
 def write_image(path, image, *, srgb=False):
-    """Writes an array of shape (h, w), (h, w, 3) or (h, w, 4), 0 black and 1 white.
+    """Writes an array of shape (h, w), (h, w, 3) or (h, w, 4), floats from 0, black, to 1, white.
 
-    The fourth is alpha, which the colours are multiplied by, for .png and .exr.
+    The fourth is alpha, which the colours are multiplied by, for .png and .exr. uint8 is sRGB, not
+    multiplied by alpha: a .png has these bytes, other files their light.
 
     path   ends with .png, .hdr, .pfm or .exr
-    srgb   a .png shows the numbers as light, through the sRGB curve; False: as bytes from 0 to 255
+    srgb   a .png shows floats as light, through the sRGB curve; False: as bytes from 0 to 255
 
     Raises OSError where that fails, TypeError or ValueError for what is no picture.
     """
-    _grelha.write_image(path, image, bool(srgb))
+    _grelha.write_image(path, image, flag(srgb, "srgb"))

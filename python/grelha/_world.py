@@ -4,7 +4,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from . import _grelha
-from ._geometry import shown
+from ._geometry import flag, shown
 
 
 def _expect_unmade(thing):
@@ -125,12 +125,12 @@ class World:
         """Moves the vertices of one mesh: those of the others stay, and mostly their grids too.
 
         mesh       its number among those that of() was given
-        vertices   as many as the mesh had before, (n, 3)
+        vertices   as many as the mesh had before, (n, 3). float64 makes all float64.
         threads    to build with; 0: one for each processor
 
-        The offset stays: it is subtracted from float32 and float64 alike, and update() of all
-        vertices chooses another. Where a new World would have this offset too, answers have its
-        bits. Calls that run in other threads meanwhile answer for the vertices before; of two
+        Answers are those of a new World. The offset stays, and grids with it, unless the middle of
+        the box around all is more than four of its sizes away: then it is chosen anew. Where a new
+        World would have this offset too, answers have its bits. Calls that run in other threads meanwhile answer for the vertices before; of two
         updates at once one is lost. Raises TypeError or ValueError, and then nothing has changed.
         """
         self._core = self._core.mesh_moved(mesh, vertices, threads)
@@ -138,7 +138,7 @@ class World:
     def add_mesh(self, vertices, faces, *, threads=0):
         """Appends a mesh. The others keep their numbers, ids and mostly their grids.
 
-        vertices, faces   as those of World; the offset stays, as for update_mesh()
+        vertices, faces   as those of World; of the offset see update_mesh()
         threads           to build with; 0: one for each processor
 
         Returns its number. With masks, its faces have 255. Raises TypeError or ValueError, and then
@@ -162,7 +162,7 @@ class World:
         The mesh keeps its arrays, and its grid if it has one of its own: mostly nothing is built.
         Raises TypeError or ValueError, and then nothing has changed.
         """
-        self._core = self._core.mesh_shown(mesh, bool(visible), threads)
+        self._core = self._core.mesh_shown(mesh, flag(visible, "visible"), threads)
 
     def is_visible(self, mesh):
         """False for a mesh that set_visible() left out."""
@@ -326,8 +326,8 @@ class World:
 
         Returns MeshCheck(triangles, vertices, edges, open_edges, inconsistent_edges,
         nonmanifold_edges, duplicate_triangles, degenerate_triangles, nonfinite_triangles), with the
-        properties closed, oriented and edge_manifold. The last six members are Findings(count,
-        first):
+        properties closed, oriented and manifold: no edge has more than two triangles. The last six
+        members are Findings(count, first):
 
         count   how many there are
         first   int64 (k,): the eight lowest faces of that kind. Of edges (k, 3): the first face

@@ -246,6 +246,8 @@ template std::vector<std::uint32_t> Wholes::repeat(const Shape&,
                                                    std::size_t) const;
 
 double number_in(py::handle given, const char* name) {
+  if (PyBool_Check(given.ptr()))
+    wrong_type(name, "a number", given);
   const double value = PyFloat_AsDouble(given.ptr());
   if (value == -1 && PyErr_Occurred()) {
     const bool is_large = PyErr_ExceptionMatches(PyExc_OverflowError) != 0;
@@ -258,6 +260,8 @@ double number_in(py::handle given, const char* name) {
 }
 
 int whole_number_in(py::handle given, const char* name, int least, int most) {
+  if (PyBool_Check(given.ptr()))
+    wrong_type(name, "a whole number", given);
   const auto index = py::reinterpret_steal<py::object>(PyNumber_Index(given.ptr()));
   if (!index) {
     PyErr_Clear();

@@ -13,6 +13,7 @@
 #include "frontend/input/default_view.hpp"
 #include "frontend/input/effects.hpp"
 #include "frontend/input/read_scene.hpp"
+#include "frontend/ply/ply_faces.hpp"
 #include "frontend/scene/scene_builder.hpp"
 #include "frontend/scene/smooth_normals.hpp"
 #include "grelha/render.hpp"
@@ -56,10 +57,14 @@ std::optional<double> optional_number(py::handle given, const char* name) {
 
 Orbit orbit_in(py::handle given) {
   const Doubles numbers(given, "orbit");
-  if (numbers.shape() != Shape{2} && numbers.shape() != Shape{3})
-    wrong_value("orbit", "azimuth, elevation and perhaps zoom", text_of(numbers.shape()));
-  const py::array_t<double> v(given.cast<py::object>());
-  const Orbit orbit{v.at(0), v.at(1), v.size() == 3 ? v.at(2) : 1};
+  const Shape& shape = numbers.shape();
+  if (!shape.empty() && shape != Shape{2} && shape != Shape{3})
+    wrong_value("orbit", "azimuth, or azimuth, elevation and perhaps zoom", text_of(shape));
+  Orbit orbit{numbers.all};
+  if (!shape.empty()) {
+    const py::array_t<double> v(given.cast<py::object>());
+    orbit = {v.at(0), v.at(1), v.size() == 3 ? v.at(2) : 1};
+  }
   if (!(std::abs(orbit.azimuth_deg) <= kMostTurn && std::abs(orbit.elevation_deg) <= kMostTurn))
     wrong_value("orbit", "degrees, at most 100 turns", py::str(given));
   if (!(orbit.zoom >= kLeastZoom && orbit.zoom <= kMostZoom))
@@ -68,6 +73,9 @@ Orbit orbit_in(py::handle given) {
 }
 
 std::vector<Light> lights_in(py::handle given, const Frame& frame) {
+  if (const py::array none = py::array::ensure(given); none && none.size() == 0)
+    return {};
+  PyErr_Clear();
   const Triples v(given, "lights");
   if (v.shape().size() != 2 || v.shape()[1] != 2)
     wrong_value("lights", "shape (n, 2, 3), of positions and colours", text_of(v.full_shape()));
@@ -233,8 +241,8 @@ View FileScene::view_for(const ViewArguments& given) const {
     wrong_value("orthographic", "a height above 0, at most 1e18", std::to_string(*height));
   if (!given.orbit.is_none())
     options.orbit = orbit_in(given.orbit);
-  if (const auto color = point_in(given.background, "background"))
-    options.background = color_of(*color, "background");
+  if (!given.background.is_none())
+    options.background = color_in(given.background, "background");
   View view = view_;
   if (!given.lights.is_none()) {
     view.lighting.lights = lights_in(given.lights, model_->frame);
@@ -298,12 +306,14 @@ struct Picture {
   ImageFormat format;
   Tone tone;
   Alpha alpha;
+  std::vector<std::uint8_t> bytes{};  ///< of a PNG, in place of the image's pixels and alpha
 };
 
 std::string encoded(const Picture& p) {
   switch (p.format) {
     case ImageFormat::png:
-      return encode_png(p.image, p.tone, {}, p.alpha);
+      return p.bytes.empty() ? encode_png(p.image, p.tone, {}, p.alpha)
+                             : encode_png(p.bytes, p.image.width, p.image.height, p.tone);
     case ImageFormat::hdr:
       return encode_hdr(p.image);
     case ImageFormat::pfm:
@@ -343,6 +353,38 @@ void put_pixels(const float* from, std::size_t channels, Picture& picture) {
     picture.alpha.push_back(from[4 * i + 3]);
 }
 
+/// The same of bytes, whose colours are sRGB and not multiplied by alpha.
+void put_pixels(const std::uint8_t* from, std::size_t channels, Picture& picture) {
+  const std::size_t count = picture.image.rgb.size() / 3;
+  if (picture.format == ImageFormat::png) {
+    for (std::size_t i = 0; i < count * (channels == 1 ? 3 : channels); ++i)
+      picture.bytes.push_back(from[channels == 1 ? i / 3 : i]);
+    return;
+  }
+  std::vector<float> light;
+  for (std::size_t i = 0; i < count * channels; ++i) {
+    const float alpha = channels == 4 ? float(from[i - i % 4 + 3]) / 255 : 1;
+    light.push_back(channels == 4 && i % 4 == 3 ? alpha : alpha * light_of_byte(from[i]));
+  }
+  put_pixels(light.data(), channels, picture);
+}
+
+/// An image as an array of floats, or of bytes.
+py::array image_in(py::handle given) {
+  constexpr const char* kShape = "(h, w), (h, w, 3) or (h, w, 4)";
+  const auto is_whole = [](const py::array& array) {
+    return array.dtype().kind() == 'i' || array.dtype().kind() == 'u';
+  };
+  const py::array floats = numbers_in(given, "image", kShape);  // refuses what are no numbers
+  const py::array array = py::array::ensure(given);
+  if (!is_whole(array))
+    return floats;
+  channels_of(shape_of(array));
+  if (array.itemsize() != 1 || array.dtype().kind() != 'u')
+    wrong_type("image", "floats from 0 to 1, or uint8", array);
+  return array;
+}
+
 }  // namespace
 
 void write_picture(py::handle path, py::handle given, bool srgb) {
@@ -350,7 +392,7 @@ void write_picture(py::handle path, py::handle given, bool srgb) {
   const std::optional<ImageFormat> format = image_format(name);
   if (!format)
     wrong_value("path", "a name that ends with .png, .hdr, .pfm or .exr", '"' + name + '"');
-  const py::array array = numbers_in(given, "image", "(h, w), (h, w, 3) or (h, w, 4)");
+  const py::array array = image_in(given);
   const Shape shape = shape_of(array);
   const std::size_t channels = channels_of(shape);
   if (srgb && *format != ImageFormat::png)
@@ -361,8 +403,12 @@ void write_picture(py::handle path, py::handle given, bool srgb) {
       Image(int(shape[1]), int(shape[0])), *format, srgb ? Tone::srgb : Tone::authored, {}};
   if (!image_fits(*format, picture.image.width, picture.image.height, channels == 4 ? 4 : 3))
     wrong_value("image", "a picture that this format holds", text_of(shape));
-  const auto floats = py::array_t<float, py::array::c_style | py::array::forcecast>(array);
-  put_pixels(floats.data(), channels, picture);
+  const auto put = [&](const auto& rows) { put_pixels(rows.data(), channels, picture); };
+  constexpr int kRows = py::array::c_style | py::array::forcecast;
+  if (array.itemsize() == 1)
+    put(py::array_t<std::uint8_t, kRows>(array));
+  else
+    put(py::array_t<float, kRows>(array));
   write_encoded(name, std::move(picture));
 }
 

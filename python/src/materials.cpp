@@ -16,6 +16,18 @@ Float3 color_of(const std::array<double, 3>& p, const char* name) {
   return {float(p[0]), float(p[1]), float(p[2])};
 }
 
+Float3 color_in(py::handle given, const std::string& name) {
+  const Doubles shape_of_given(given, name.c_str());
+  if (shape_of_given.shape().empty()) {
+    const double grey = number_in(given, name.c_str());
+    return color_of({grey, grey, grey}, name.c_str());
+  }
+  const Triples v(given, name.c_str());
+  if (!v.shape().empty())
+    wrong_value(name.c_str(), "a number or shape (3,)", text_of(v.full_shape()));
+  return color_of({v.points().at(0, 0), v.points().at(0, 1), v.points().at(0, 2)}, name.c_str());
+}
+
 bool put_colors(py::handle given, Scene& scene) {
   Triangles& triangles = scene.geometry.triangles;
   const bool bytes = py::isinstance<py::array_t<std::uint8_t>>(given);
@@ -48,19 +60,6 @@ bool put_colors(py::handle given, Scene& scene) {
 }
 
 namespace {
-
-/// Three numbers, or one for all.
-Float3 color_in(py::handle given, const std::string& name) {
-  const Doubles shape_of_given(given, name.c_str());
-  if (shape_of_given.shape().empty()) {
-    const double grey = number_in(given, name.c_str());
-    return color_of({grey, grey, grey}, name.c_str());
-  }
-  const Triples v(given, name.c_str());
-  if (!v.shape().empty())
-    wrong_value(name.c_str(), "a number or shape (3,)", text_of(v.full_shape()));
-  return color_of({v.points().at(0, 0), v.points().at(0, 1), v.points().at(0, 2)}, name.c_str());
-}
 
 float at_least_0(py::handle given, const std::string& name) {
   const double number = number_in(given, name.c_str());

@@ -11,6 +11,8 @@ namespace grelha::python {
 
 /// Light of at least 0. Throws ValueError that names the argument.
 Float3 color_of(const std::array<double, 3>& color, const char* name);
+/// Three numbers, or one for all.
+Float3 color_in(py::handle given, const std::string& name);
 
 /// Gives a mesh colours, (vertices, 3) or (faces, 3): bytes are sRGB, other numbers light from 0 to
 /// 1. Those of faces become materials like its one. Returns whether they are of vertices. Throws

@@ -101,7 +101,8 @@ ModelParts parts_of_state(const py::tuple& state) {
     throw py::value_error("state: expected vertices of each mesh");
   if (arrays.contains("doubles"))
     parts.scene.doubles = vector_of<double>(arrays["doubles"]);
-  if (const std::size_t all = parts.scene.doubles.size(); all != 0 && all != 3 * g.triangles.vertex_count())
+  if (const std::size_t all = parts.scene.doubles.size();
+      all != 0 && all != 3 * g.triangles.vertex_count())
     throw py::value_error("state: expected three doubles of each vertex");
   return parts;
 }

@@ -13,7 +13,7 @@ TORUS = pathlib.Path(__file__).parents[2] / "scenes" / "data" / "torus.ply"
 class Check(unittest.TestCase):
     def test_cube(self):
         check = grelha.World(meshes.CUBE, meshes.CUBE_FACES).check()
-        self.assertTrue(check.closed and check.oriented and check.edge_manifold)
+        self.assertTrue(check.closed and check.oriented and check.manifold and check.edge_manifold)
         self.assertEqual(check[:3], (12, 8, 18))
         self.assertEqual([found.count for found in check[3:]], [0] * 5)
         self.assertEqual(check.open_edges.first.shape, (0, 3))
@@ -29,7 +29,7 @@ class Check(unittest.TestCase):
         faces = np.concatenate([meshes.CUBE_FACES[1:], meshes.CUBE_FACES[5:6], [[0, 1, 1]]])
         faces[8] = faces[8, ::-1]
         check = grelha.World(meshes.CUBE, faces).check()
-        self.assertFalse(check.closed or check.oriented or check.edge_manifold)
+        self.assertFalse(check.closed or check.oriented or check.manifold or check.edge_manifold)
         # [0, 1, 3] is gone, [0, 5, 1] is there twice
         edges = {tuple(sorted(edge)) for edge in check.open_edges.first[:, 1:].tolist()}
         self.assertEqual(edges, {(1, 3), (0, 3), (0, 5), (1, 5)})

@@ -143,6 +143,38 @@ class Meshes(unittest.TestCase):
         world.update_mesh(1, local * 2 ** 18)
         np.testing.assert_allclose(world.vertices[3:3 + len(BALL)], local * 2.0 ** 18, atol=1)
 
+    def test_offset_follows_what_is_there(self):
+        """Whoever comes and goes in a survey, answers are those of a new World."""
+        near = [(v.astype(float), f) for v, f in (scene()[1], scene()[4])]
+        far = [(v + FAR + 0.3, f) for v, f in near]
+        for begun in ([], near[:1]):
+            world = grelha.World.of(begun)
+            for i, (vertices, faces) in enumerate(far):
+                if i < len(begun):
+                    world.update_mesh(i, vertices)
+                else:
+                    world.add_mesh(vertices, faces)
+            self.same(world, grelha.World.of(far), FAR)
+            self.assertTrue(world.offset.any())
+        world = grelha.World.of(near)
+        for i, (vertices, _) in enumerate(far):
+            world.update_mesh(i, vertices)
+            world = pickle.loads(pickle.dumps(world))
+        self.same(world, grelha.World.of(far), FAR)
+        for i, (vertices, _) in enumerate(near):
+            world.update_mesh(i, vertices)
+        self.same(world, grelha.World.of(near))
+        world.update(joined(far)[0])
+        self.same(world, grelha.World.of(far), FAR)
+
+    def test_float64_makes_all_float64(self):
+        for change in (lambda world: world.add_mesh(CUBE.astype(float), CUBE_FACES),
+                       lambda world: world.update_mesh(0, CUBE.astype(float))):
+            world = grelha.World.of([(CUBE, CUBE_FACES)])
+            self.assertEqual(world.vertices.dtype, np.float32)
+            change(world)
+            self.assertEqual(world.vertices.dtype, np.float64)
+
     def test_errors_name_the_mesh(self):
         good = (CUBE, CUBE_FACES)
         broken = CUBE.copy()
@@ -171,6 +203,7 @@ class Meshes(unittest.TestCase):
                 (5, CUBE, ValueError, "mesh: expected 0 to 4, found 5"),
                 (-1, CUBE, ValueError, "mesh: expected 0 to 4, found -1"),
                 (1.5, CUBE, TypeError, "mesh: expected a whole number"),
+                (True, CUBE, TypeError, "mesh: expected a whole number, found bool"),
                 (4, CUBE[:7], ValueError, r"vertices: .*\(8, 3\), found \(7, 3\)"),
                 (4, broken, ValueError, r"vertices: expected finite .*inf at \(7, 2\)"),
                 (4, None, TypeError, "vertices: expected numbers")):
@@ -221,6 +254,10 @@ class Meshes(unittest.TestCase):
                                           *scene()[3:]]))
         with self.assertRaisesRegex(ValueError, "mesh: expected 0 to 4, found 5"):
             world.set_visible(5, True)
+        for visible in ("no", None, 2, 0.5):
+            with self.assertRaisesRegex(TypeError, "visible: expected True or False, found "):
+                world.set_visible(0, visible)
+        world.set_visible(0, np.bool_(False))
         with self.assertRaisesRegex(ValueError, "set_visible: expected a World of triangles alone"):
             grelha.World.spheres(CUBE, 1).set_visible(0, False)
 
@@ -264,6 +301,9 @@ class Meshes(unittest.TestCase):
                        state[-1][::-1]):
             with self.assertRaisesRegex(ValueError, "state: expected vertices of each mesh"):
                 restored(cls, (*state[:-1], np.uint32(firsts)), masks)
+        short = {**state[1], "doubles": np.zeros(7)}
+        with self.assertRaisesRegex(ValueError, "state: expected three doubles of each vertex"):
+            restored(cls, (state[0], short, *state[2:]), masks)
 
 
 if __name__ == "__main__":

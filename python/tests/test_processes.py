@@ -7,6 +7,7 @@ import pickle
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 import unittest
@@ -76,7 +77,7 @@ class Pickles(unittest.TestCase):
             restored(cls, state, [1, 2])
 
     def test_broken_scenes_raise(self):
-        restored, (cls, state) = grelha.Scene(CUBE, CUBE_FACES).__reduce__()
+        restored, (cls, state, _) = grelha.Scene(CUBE, CUBE_FACES).__reduce__()
         for i in range(len(state)):
             for bad in (None, -7, (), np.zeros((2, 2)), "a"):
                 with self.assertRaises((ValueError, TypeError, RuntimeError)):
@@ -217,6 +218,59 @@ class Threads(unittest.TestCase):
         done.set()
         thread.join()
         self.assertGreater(during, 5)
+
+
+FOREVER = {  # of a daemon thread
+    "short": "world.closest((0, 0, 9), (0, 0, -1))",
+    "broadcast": "world.closest(origins[:9], (0, 0, 1), np.zeros(1), np.ones(9))",
+    "doubles": "world.occluded(origins.astype(float), (0, 0, 1))",
+    "build": "grelha.World(origins.astype(float), faces)",
+    "render": "scene.render(64, 64)",
+    "picture": "grelha.write_image(name, np.random.rand(99, 99))",
+    "long": "world.occluded(np.tile(origins, (90, 1)), (0, 0, 1))",
+}
+
+
+class Exits(unittest.TestCase):
+    def test_daemon_threads_in_calls_end_quietly(self):
+        """Python ends while threads are in calls: as with numpy, status 0 and not a word."""
+        program = """
+import sys, tempfile, threading, time, numpy as np, grelha
+corners, faces = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], np.tile([[0, 1, 2]], (50000, 1))
+world, scene = grelha.World(corners, faces[:1]), grelha.Scene(corners, faces[:1])
+origins, name = np.zeros((10 ** 5, 3), np.float32), sys.argv[2]
+def forever():
+    while True: {}
+for _ in range(2): threading.Thread(target=forever, daemon=True).start()
+time.sleep(float(sys.argv[1]))
+"""
+        with tempfile.TemporaryDirectory() as folder:
+            for kind, statement in FOREVER.items():
+                with self.subTest(kind):
+                    for run in range(6):
+                        done = subprocess.run(
+                            [sys.executable, "-c", program.format(statement),
+                             str(0.05 + 0.013 * run), os.path.join(folder, "a.png")],
+                            capture_output=True, timeout=60, check=False)
+                        self.assertEqual((done.returncode, done.stdout, done.stderr), (0, b"", b""))
+
+    def test_exit_handlers_may_call(self):
+        """A handler that runs after the module's, and waits for a thread that calls."""
+        program = """
+import atexit, threading
+def last():
+    asked = threading.Thread(target=lambda: print(world.closest((.2, .2, 1), (0, 0, -1)).id),
+                             daemon=True)
+    asked.start()
+    asked.join()
+    print(world.occluded((.2, .2, 1), (0, 0, -1)))
+atexit.register(last)
+import grelha
+world = grelha.World([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+"""
+        done = subprocess.run([sys.executable, "-c", program], capture_output=True, timeout=60,
+                              check=False)
+        self.assertEqual((done.returncode, done.stdout, done.stderr), (0, b"0\nTrue\n", b""))
 
 
 LONG = {

@@ -71,6 +71,19 @@ class Closest(unittest.TestCase):
         np.testing.assert_array_equal(world.occluded(origins, directions, 0, 3.5, skip=first),
                                       [False] * 5)
 
+    def test_answers_of_some_rays(self):
+        world = grelha.World(CUBE, CUBE_FACES)
+        hits = world.closest(*rays(300, 3))
+        met = hits.id >= 0
+        some, three = hits[met], hits[[5, 1, 5]]
+        self.assertIsInstance(some, grelha.Hits)
+        self.assertTrue(np.isfinite(some.t).all() and 0 < len(some.t) < 300)
+        np.testing.assert_array_equal(some.u, hits.u[met])
+        np.testing.assert_array_equal(three.id, hits.id[[5, 1, 5]])
+        self.assertIs(hits[1], hits.id)
+        self.assertEqual(len(hits[:2]), 2)
+        self.assertEqual(len(world.closest_points(CUBE)[np.arange(3)].points), 3)
+
     def test_closed_mesh_loses_no_ray(self):
         vertices, faces = ball(20)
         corners = vertices[faces]

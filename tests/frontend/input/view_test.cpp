@@ -297,8 +297,9 @@ TEST(ViewOptions, ThatCannotBeAreRefused) {
   EXPECT_EQ(error("--eye 1,2"), "--eye: expected X,Y,Z, found \"1,2\"");
   EXPECT_EQ(error("--at 1,2,nan"), "--at: expected numbers X,Y,Z within 1e18, found \"nan\"");
   EXPECT_EQ(error("--angle 180"), "--angle: expected degrees between 0 and 180, found \"180\"");
-  EXPECT_EQ(error("--orbit 1"),
-            "--orbit: expected AZIMUTH,ELEVATION or AZIMUTH,ELEVATION,ZOOM, found \"1\"");
+  EXPECT_EQ(error("--orbit 1,2,3,4"),
+            "--orbit: expected AZIMUTH, AZIMUTH,ELEVATION or AZIMUTH,ELEVATION,ZOOM, "
+            "found \"1,2,3,4\"");
   EXPECT_EQ(error("--orbit 1,2,0"), "--orbit: expected a zoom of .001 to 1000, found \"0\"");
   EXPECT_EQ(error("--orbit 1e9,2"), "--orbit: expected degrees, at most 100 turns, found \"1e9\"");
   EXPECT_EQ(error("--orthographic 0"),
