@@ -1,7 +1,7 @@
 #!/bin/sh
-# bare_debian.sh WHAT FOLDER [RELEASE [MIRROR]]: what users do first, in a Debian in FOLDER that has
-# nothing else: bookworm (12) unless RELEASE says trixie (13). As root, with debootstrap; not a test
-# of ctest's: it downloads some 200 MB.
+# bare_debian.sh WHAT FOLDER [RELEASE [MIRROR]]: what users do first, in a Debian in FOLDER that
+# has nothing else: bookworm (12), unless RELEASE says trixie (13). As root, with debootstrap; not a
+# test of ctest's: it downloads some 200 MB.
 #   commands   both commands of the README in a clone, and the CPU seconds of each step
 #   packages   installs those of build/packages; runs the program, man page, README, recipes, and
 #              the examples against the library; pictures are left in FOLDER/tmp
@@ -11,7 +11,8 @@
 set -eu
 what=$1 root=$2
 project=$(cd "$(dirname "$0")/.." && pwd)
-[ -e "$root/etc/debian_version" ] || debootstrap --variant=minbase "${3:-bookworm}" "$root" ${4:+"$4"}
+[ -e "$root/etc/debian_version" ] ||
+  debootstrap --variant=minbase "${3:-bookworm}" "$root" ${4:+"$4"}
 mount -t proc proc "$root/proc"
 trap 'umount "$root/proc"' EXIT
 rm -rf "$root/tmp/grelha" "$root/tmp/packages"

@@ -75,7 +75,7 @@ class PointBounds {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   std::array<double, 3> middle() const;
   double size() const;                                        ///< the longest side
-  double distance(const std::array<double, 3>& point) const;  ///< from the middle, along an axis
+  double distance(const std::array<double, 3>& point) const;  ///< from the middle
   std::array<double, 3> low_{kInfinity, kInfinity, kInfinity};
   std::array<double, 3> high_{-kInfinity, -kInfinity, -kInfinity};
 };

@@ -52,8 +52,8 @@ Object move_mesh(OffsetScene& scene, std::size_t mesh, const PointArray& vertice
 /// has.
 void show_mesh(OffsetScene& scene, std::size_t mesh, bool visible);
 /// Appends a mesh, whose vertices count as those of move_mesh(), and returns its triangles, or all
-/// where the offset changes. The others keep their numbers and ids. Throws BadNumber and std::invalid_argument, also for a scene
-/// with anything but triangles; then nothing has changed.
+/// where the offset changes. The others keep their numbers and ids. Throws BadNumber and
+/// std::invalid_argument, also for a scene with anything but triangles; then nothing has changed.
 Object add_mesh(OffsetScene& scene, const MeshArrays& mesh);
 
 }  // namespace grelha

@@ -139,7 +139,7 @@ bool choose_offset(OffsetScene& scene) {
   return true;
 }
 
-/// Writes vertices of some triangles from a place on, in the frame of the scene. Returns what moved.
+/// Writes vertices of some triangles from a place on, in the scene's frame. Returns what moved.
 Object put_vertices(OffsetScene& scene,
                     std::size_t first,
                     const PointArray& vertices,

@@ -130,8 +130,9 @@ class World:
 
         Answers are those of a new World. The offset stays, and grids with it, unless the middle of
         the box around all is more than four of its sizes away: then it is chosen anew. Where a new
-        World would have this offset too, answers have its bits. Calls that run in other threads meanwhile answer for the vertices before; of two
-        updates at once one is lost. Raises TypeError or ValueError, and then nothing has changed.
+        World would have this offset too, answers have its bits. Calls that run in other threads
+        meanwhile answer for the vertices before; of two updates at once one is lost. Raises
+        TypeError or ValueError, and then nothing has changed.
         """
         self._core = self._core.mesh_moved(mesh, vertices, threads)
 

@@ -41,7 +41,7 @@ class FileScene {
   /// Throws ValueError for what state() did not make.
   static FileScene of_state(const py::tuple& state);
 
-  /// The scene with its World as an update left it: seen from where it was, normals as they are now.
+  /// The scene with its World as an update left it, seen from where it was, with new normals.
   FileScene of_world(const SharedModel& world) const;
 
   const SharedModel& model() const { return model_; }
@@ -65,6 +65,8 @@ class FileScene {
   int samples_ = 1;
 };
 
+/// The name of a file, of what Python takes for one.
+std::string path_in(py::handle given);
 /// Writes an array of shape (h, w), (h, w, 3) or (h, w, 4) as a picture; `srgb`: a PNG through that
 /// curve.
 void write_picture(py::handle path, py::handle image, bool srgb);

@@ -10,8 +10,8 @@
 namespace grelha::python {
 namespace {
 
-/// Throws ImportError for a numpy whose arrays would be read as zeros: before 2.12 pybind11 finds no
-/// size of a number where numpy 2 has it.
+/// Throws ImportError for a numpy whose arrays would be read as zeros: before 2.12 pybind11 looks
+/// for the size of a number where numpy 2 has none.
 void expect_numpy() {
   if (PYBIND11_VERSION_MAJOR > 2 || PYBIND11_VERSION_MINOR >= 12)
     return;

@@ -38,6 +38,23 @@ std::vector<T> vector_of(const py::handle& given) {
   return {array.data(), array.data() + array.size()};
 }
 
+std::vector<Object> objects_in(const py::handle& given) {
+  const std::vector<std::uint32_t> ranges = vector_of<std::uint32_t>(given);
+  if (ranges.size() % 3 != 0)
+    throw py::value_error("state: expected three numbers of each mesh");
+  std::vector<Object> objects;
+  for (std::size_t i = 0; i < ranges.size(); i += 3)
+    objects.push_back({ranges[i], ranges[i + 1], ranges[i + 2] != 0});
+  return objects;
+}
+
+std::vector<double> doubles_in(const py::handle& given, std::size_t vertices) {
+  std::vector<double> all = vector_of<double>(given);
+  if (all.size() != 3 * vertices)
+    throw py::value_error("state: expected three doubles of each vertex");
+  return all;
+}
+
 }  // namespace
 
 py::tuple state_of(const Model& model) {
@@ -83,11 +100,7 @@ ModelParts parts_of_state(const py::tuple& state) {
   if (materials >= 0x1000000)
     throw py::value_error("state: expected fewer materials");
   parts.scene.materials.resize(materials + std::size_t{1});
-  const std::vector<std::uint32_t> ranges = vector_of<std::uint32_t>(state[2]);
-  if (ranges.size() % 3 != 0)
-    throw py::value_error("state: expected three numbers of each mesh");
-  for (std::size_t i = 0; i < ranges.size(); i += 3)
-    g.objects.push_back({ranges[i], ranges[i + 1], ranges[i + 2] != 0});
+  g.objects = objects_in(state[2]);
   const auto offset = state[3].cast<py::tuple>();
   for (std::size_t a = 0; a < 3; ++a)
     parts.scene.offset[a] = offset[a].cast<double>();
@@ -100,10 +113,7 @@ ModelParts parts_of_state(const py::tuple& state) {
        first.back() != g.triangles.vertex_count() || !std::is_sorted(first.begin(), first.end())))
     throw py::value_error("state: expected vertices of each mesh");
   if (arrays.contains("doubles"))
-    parts.scene.doubles = vector_of<double>(arrays["doubles"]);
-  if (const std::size_t all = parts.scene.doubles.size();
-      all != 0 && all != 3 * g.triangles.vertex_count())
-    throw py::value_error("state: expected three doubles of each vertex");
+    parts.scene.doubles = doubles_in(arrays["doubles"], g.triangles.vertex_count());
   return parts;
 }
 
