@@ -88,9 +88,10 @@ int worse(int a, int b) {
   return std::max(a, b);
 }
 
-void remove_checkpoint(const RenderCommand& command) {
-  if (command.work.save_until_end && !command.work.checkpoint.empty())
-    remove_kept(command.work.checkpoint);
+void remove(const Checkpoints& left) {
+  for (const auto& [path, location] : left)
+    if (location_of(path) == location)  // else another run has saved there
+      remove_kept(path);
 }
 
 /// Renders every scene, even if another one fails. Stops after a signal, or when one of several
@@ -98,6 +99,7 @@ void remove_checkpoint(const RenderCommand& command) {
 int run(const RenderCommand& command, Ranks& ranks) {
   limit_memory(command.input.max_memory);
   int worst = kOk;
+  Checkpoints left;
   const std::vector<RenderCommand> all = commands_for(command);
   std::optional<StopSignals> signals;
   if (ranks.first())
@@ -107,13 +109,12 @@ int run(const RenderCommand& command, Ranks& ranks) {
   for (const RenderCommand& one : all) {
     if (const int signal = StopSignals::seen())
       return interrupted(signal, one.scene);
-    worst = worse(worst, status_of(ranks, [&] { return render_scene(one, ranks); }));
+    worst = worse(worst, status_of(ranks, [&] { return render_scene(one, ranks, left); }));
     if (worst >= kSignalled || (ranks.count() > 1 && !ranks.in_step()))
       break;
   }
-  if ((worst == kOk || worst == kNotMet) && ranks.first())
-    for (const RenderCommand& one : all)
-      remove_checkpoint(one);
+  if (worst == kOk || worst == kNotMet)
+    remove(left);
   return worst;
 }
 

@@ -104,8 +104,9 @@ RenderCommand without_output(RenderCommand command) {
 /// A scene on its way from file to picture, step by step.
 class SceneRender {
  public:
-  SceneRender(const RenderCommand& given, Ranks& ranks)
+  SceneRender(const RenderCommand& given, Ranks& ranks, Checkpoints& left)
       : ranks_(ranks),
+        left_(left),
         command_(ranks.first() ? given : without_output(given)),
         bars_(!command_.quiet && stderr_is_terminal()) {}
 
@@ -276,6 +277,8 @@ class SceneRender {
     const Stopwatch write;
     work.finish(command_.layers.any() ? first_hits(world, camera_, file_.frame, command_.layers)
                                       : Layers{});
+    if (command_.work.save_until_end && work.saved_location())
+      left_.emplace_back(command_.work.checkpoint, *work.saved_location());
     write_map(command_.samples_map, "samples of each pixel", maps.samples, camera_, [](double n) {
       return std::log2(n);
     });
@@ -308,6 +311,7 @@ class SceneRender {
   }
 
   Ranks& ranks_;
+  Checkpoints& left_;
   const RenderCommand command_;
   const bool bars_;
   WarningLog log_;
@@ -321,8 +325,8 @@ class SceneRender {
 
 }  // namespace
 
-int render_scene(const RenderCommand& command, Ranks& ranks) {
-  return SceneRender(command, ranks).run();
+int render_scene(const RenderCommand& command, Ranks& ranks, Checkpoints& left) {
+  return SceneRender(command, ranks, left).run();
 }
 
 }  // namespace grelha

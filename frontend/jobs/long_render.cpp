@@ -105,7 +105,8 @@ LongRender::LongRender(
     continue_from_saved();
     return;
   }
-  saved_ = saved_names(command_, [](const std::string&) { return true; });
+  saved_ =
+      saved_names(command_, [](const std::string&) { return false; });  // not another's picture
   saved_.work = resolved.work.checkpoint;
   continued_ = exists(saved_.work);
   if (!continued_)

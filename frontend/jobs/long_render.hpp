@@ -56,6 +56,8 @@ class LongRender {
   /// is removed. It stays and holds everything where more scenes are to come, and where the writing
   /// fails.
   void finish(Layers layers = {});
+  /// Where the checkpoint is that this render read or wrote last; empty: it has none.
+  const std::optional<Location>& saved_location() const { return saved_location_; }
 
  private:
   /// An action repeated at intervals. Warns once of a failure, and tries again.

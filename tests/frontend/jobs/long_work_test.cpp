@@ -122,6 +122,17 @@ TEST_F(LongWork, OfSeveralScenesTheFinishedAreNotRenderedAgain) {
   EXPECT_TRUE(folder_.read("ball.pfm") == picture && folder_.read("later.pfm") == picture);
 }
 
+/// The second scene comes from a pipe, whose writer waits for the first scene's checkpoint.
+TEST_F(LongWork, OfSeveralScenesCheckpointsOfOthersStay) {
+  folder_.write("foreign", "of another run");
+  const Outcome outcome = run("render ball.nff later.nff -o {}.pfm --checkpoint {}.kept",
+                              "mkfifo later.nff; (while ! test -e ball.kept; do sleep .01; done; "
+                              "mv foreign ball.kept; cat ball.nff >later.nff) & ");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(folder_.list(), "ball.kept ball.nff ball.pfm later.nff later.pfm");
+  EXPECT_EQ(folder_.read("ball.kept"), "of another run");
+}
+
 TEST_F(LongWork, PreviewsShowThePictureSoFar) {
   const char* const endless[] = {"--samples 65536",
                                  "--error .000002",

@@ -114,6 +114,12 @@ TEST_F(LongWork, WhatOtherPicturesLeftStays) {
   EXPECT_EQ(run(job + "3 --strict").err, other + "3\n") << "which is no warning";
   EXPECT_EQ(run(job + "3 --quiet").err, "");
   EXPECT_EQ(folder_.list(), "ball.nff ball.partial.grelha ball.partial.png ball.png");
+  const std::string picture = folder_.read("ball.partial.png");
+  const std::string stopped = stop("4 --checkpoint kept");
+  EXPECT_EQ(stopped, "saved in kept");
+  EXPECT_EQ(run(job + "4 --checkpoint kept").status, 0);
+  EXPECT_EQ(folder_.list(), "ball.nff ball.partial.grelha ball.partial.png ball.png");
+  EXPECT_TRUE(folder_.read("ball.partial.png") == picture);
   EXPECT_TRUE(run(job + "1").err.starts_with("grelha: goes on from ball.partial.grelha, "));
   EXPECT_EQ(folder_.list(), "ball.nff ball.png");
   folder_.write("ball.partial.grelha", "a letter");
