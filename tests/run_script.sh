@@ -40,6 +40,7 @@ case \$* in
     ;;
 esac
 echo "[1/4 9.5 3] one"
+[ ! -e $2/slow ] || $(command -v sleep) 2
 if [ -e $2/broken ]; then
   echo "FAILED: two.o"
   echo "two.cpp:1:1: error: wrong"
@@ -52,6 +53,7 @@ cat >stand-ins/ctest <<CTEST
 #!/bin/sh
 [ ! -e $2/passing ] || { echo "100% tests passed, 0 tests failed out of 2"; exit; }
 echo "1/2 Test #1: one ....   Passed    0.01 sec"
+[ ! -e $2/slow ] || $(command -v sleep) 2
 echo "2/2 Test #2: two ....***Failed    0.02 sec"
 echo "50% tests passed, 1 tests failed out of 2"
 exit 8
@@ -75,7 +77,9 @@ asked() {  # asked() TEXT: the last build was configured with it
   }
 }
 scratch=$2
-steps='run: configuring (release)|run: building grelha|'
+logs="run: all that is said goes to $2/project/build/release/run.log|run: configuring (release)|"
+steps="${logs}run: building grelha|"
+testing="run: testing; all that is said goes to $2/project/build/release/test.log|"
 rm -rf project/build/release/.built-grelha
 try "${steps}here: info x.nff|" info x.nff
 asked GRELHA_ISAS=native
@@ -85,12 +89,12 @@ asked GRELHA_ISAS=all
 touch project/kernel/new.cpp
 failures='2/2 Test #2: two ....***Failed    0.02 sec|50% tests passed, 1 tests failed out of 2|'
 log=$2/project/build/release/test.log
-try "run: configuring (release)|run: building everything|${failures}why: LastTest.log|$(
+try "${logs}run: building everything|$testing${failures}why: LastTest.log|$(
   )run: tests failed; all that was said is in $log|" test
 grep -q '^1/2 Test #1: one' "$log" || { echo "the log of tests is incomplete"; exit 1; }
 # What passed is not run again, until a file changes or --again.
 touch passing
-passed='100% tests passed, 0 tests failed out of 2|why: LastTest.log|'
+passed="${testing}100% tests passed, 0 tests failed out of 2|why: LastTest.log|"
 try "$passed" test -L unit
 try "$passed" test
 said=$(PATH=$2/stand-ins project/run test 2>&1)
@@ -100,13 +104,13 @@ case $said in
 esac
 try "$passed" test --again
 rm passing
-failed="${failures}why: LastTest.log|run: tests failed; all that was said is in $log|"
+failed="$testing${failures}why: LastTest.log|run: tests failed; all that was said is in $log|"
 try "$failed" test --again
 try "$failed" test
 touch passing
 try "$passed" test
 rm project/kernel/new.cpp
-try "run: configuring (release)|run: building everything|$passed" test
+try "${logs}run: building everything|$passed" test
 sleep .01
 touch project/README.md
 try "$passed" test
@@ -141,6 +145,17 @@ failed="${failed}run: this failed: building grelha; all that was said is in $log
 try "$steps$failed" info x.nff
 grep -q '^\[1/4 9.5 3\] one$' "$log" || { echo "the log is incomplete"; exit 1; }
 rm broken
+# On a pipe a long step says a line now and then; half minutes are short here.
+mkdir short
+printf '#!/bin/sh\nexec %s .01\n' "$(command -v sleep)" >short/sleep
+chmod +x short/sleep
+touch slow project/kernel/newer.cpp
+said=$(PATH=$2/short:$2/stand-ins project/run test 2>&1) || true
+for line in "building everything .1/4., 9 s left" "testing .1/2., [0-9]* s left"; do
+  echo "$said" | grep -q "^run: $line, [0-9]* s so far$" || { echo "a pipe got: $said"; exit 1; }
+done
+rm slow
+touch project/kernel/newest.cpp
 # On a terminal the build counts in one line.
 if command -v script >/dev/null && script -qec true /dev/null >/dev/null 2>&1; then
   said=$(PATH=$2/stand-ins "$(command -v script)" -qec "project/run info x.nff" /dev/null |
