@@ -67,8 +67,8 @@ class PointBounds {
   /// middle of the box is at most four of its sizes from the origin: floats then resolve a
   /// millionth of the size. Else it is the middle, rounded to multiples of a power of two that is
   /// at least the size: subtracting it costs no digit. Scene files that floats cannot hold count
-  /// from it as well. `before` is the offset of points that moved: it stays if the middle is at most
-  /// four sizes from it.
+  /// from it as well. `before`, an offset of points that moved, stays if the middle is at most four
+  /// sizes away.
   std::array<double, 3> offset(const std::array<double, 3>& before = {}) const;
 
  private:
