@@ -15,7 +15,7 @@ LATER = {
     "skip_cost.py": "a claim of speed: skip costs 5 to 7 times t_min",
     "p57_far_closest_cost.py": "a claim of speed: closest points from afar are linear",
 }
-SUFFIXES = {".nff", ".p3f", ".ply", ".stl", ".cpp", ".py"}
+SUFFIXES = {".nff", ".p3f", ".ply", ".stl", ".c", ".cpp", ".py"}
 HELPERS = {"ref.py", "moved_far_picture.py"}  # what others import or run
 PROGRAMS = {  # what a program must say, and must not
     "moved_far.cpp": (r"mesh   size 2 at 1e\+06 .*: 0 lost, 0 false, 0 other",
