@@ -275,5 +275,5 @@ class Misuses(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    warnings.simplefilter("ignore", np.VisibleDeprecationWarning)
+    warnings.simplefilter("ignore", getattr(np, "exceptions", np).VisibleDeprecationWarning)
     unittest.main()
