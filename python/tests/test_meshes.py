@@ -166,6 +166,16 @@ class Meshes(unittest.TestCase):
         self.same(world, grelha.World.of(near))
         world.update(joined(far)[0])
         self.same(world, grelha.World.of(far), FAR)
+        farther = [(v + FAR, f) for v, f in far]
+        for i, (vertices, _) in enumerate(farther):
+            world.update_mesh(i, vertices)
+        self.same(world, grelha.World.of(farther), 2 * FAR)
+        for of_all in (True, False):  # one stays where the other comes to
+            world = grelha.World.of(near if of_all else [near[0], far[1]])
+            if of_all:
+                world.update(np.concatenate([near[0][0], far[1][0]]))
+            world.update_mesh(0, far[0][0])
+            self.same(world, grelha.World.of(far), FAR)
 
     def test_float64_makes_all_float64(self):
         for change in (lambda world: world.add_mesh(CUBE.astype(float), CUBE_FACES),

@@ -73,8 +73,8 @@ class Pictures(unittest.TestCase):
                       {"colors": np.resize(grey, faces.shape)}):
             scene = grelha.Scene(vertices, faces, **given)
             scene.render(8, 8)
-            view["lights"] = scene.lights
-            for moved in (vertices * 0.5 + (0.3, 0, 0), vertices + FAR):
+            view["lights"], eye = scene.lights, scene.camera["eye"]
+            for moved in (vertices * (0.5, 1, 0.2) + (0.3, 0, 0), vertices + FAR):
                 for move in (scene.world.update, lambda v: scene.world.update_mesh(0, v)):
                     move(moved)
                     shift = FAR * (moved is not vertices and abs(moved).max() > 9)
@@ -83,6 +83,8 @@ class Pictures(unittest.TestCase):
                     other = grelha.Scene(moved, faces, **given).render(**seen)
                     np.testing.assert_allclose(scene.render(**seen), other, atol=2e-3)
                     self.assertGreater(other.std(), 0.01)
+                    np.testing.assert_allclose(scene.lights, view["lights"], atol=0.5)
+                    np.testing.assert_allclose(scene.camera["eye"], eye, atol=0.5)
                     move(vertices)
         scene.world.update_mesh(0, vertices * 0.5)
         scene.world.set_visible(0, False)
