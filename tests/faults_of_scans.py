@@ -42,4 +42,10 @@ FAULTS = [
     Fault("insides that never stop", "kernel/query/inside.cpp",
           "each_run(points.size(), options, work, kPoints);\n}\n\ndouble",
           "work(0, points.size());\n}\n\ndouble", "exact", "Contains.Reports*"),
+    Fault("an offset that stays", "kernel/grid/meshes.cpp",
+          "if (vertices.in_double && choose_offset(scene))", "if (false && choose_offset(scene))",
+          "world", "Meshes.InDoubleAreRounded*"),
+    Fault("checkpoints of other runs removed", "frontend/cli/main.cpp",
+          "if (location_of(path) == location)", "if (true)", "long_work",
+          "*CheckpointsOfOthersStay"),
 ]

@@ -160,6 +160,12 @@ class Pictures(unittest.TestCase):
             scene = grelha.Scene(CUBE, CUBE_FACES, colors=np.uint8([[200, 100, 7]] * 8))
             found = found.reshape(16, 16, 3)[::-1].reshape(-1, 3)[:, 0]
             np.testing.assert_array_equal(found[[200, 100, 7]], scene.colors[0])
+            alpha = np.float32(color[..., 3:]) / np.float32(255)
+            grelha.write_image(os.path.join(folder, "a.exr"), color)
+            grelha.write_image(os.path.join(folder, "b.exr"),
+                               np.concatenate([found[color[..., :3]] * alpha, alpha], -1))
+            files = [pathlib.Path(folder, name).read_bytes() for name in ("a.exr", "b.exr")]
+            self.assertEqual(*files)
             for kind in (np.int64, np.uint16, np.int8, bool):
                 with self.assertRaisesRegex(TypeError, f"image: expected .*{kind.__name__} array"):
                     grelha.write_image(name, np.ones((4, 4), kind))
