@@ -125,17 +125,15 @@ bool to_integers(const ExactRay& ray, const float (&corner)[3][3], IntegerTriang
 }
 
 /// Tells from edge functions if a ray crosses a triangle, edges and corners included; adds them.
-/// edge(i) is opposite to corner i; bits of those that are 0 are set in `zeros`.
+/// edge(i) is opposite to corner i.
 template <class Number, class Edge>
-bool crosses_inside(const Edge& edge, Number& sum, unsigned& zeros) {
+bool crosses_inside(const Edge& edge, Number& sum) {
   int least = 1;
   int most = -1;
   for (int i = 0; i < 3; ++i) {
     const Number one = edge(i);
-    const int of_one = sign(one);
-    least = std::min(least, of_one);
-    most = std::max(most, of_one);
-    zeros |= unsigned{of_one == 0} << i;
+    least = std::min(least, sign(one));
+    most = std::max(most, sign(one));
     if (least * most < 0)
       return false;
     sum += one;
@@ -148,7 +146,6 @@ struct IntegerCrossing {
   bool some = false;
   Int128 numerator = 0, denominator = 0;
   double unit = 0;
-  unsigned zeros = 0;  ///< edges on whose lines the ray is: bit i is opposite to corner i
 };
 
 IntegerCrossing cross_integers(const IntegerTriangle& t) {
@@ -158,10 +155,9 @@ IntegerCrossing cross_integers(const IntegerTriangle& t) {
     return dot(i == 0 ? bc : cross(at[(i + 1) % 3], at[(i + 2) % 3]), t.dir[0]);
   };
   Int128 sum = 0;
-  unsigned zeros = 0;
-  if (!crosses_inside(edge, sum, zeros))
+  if (!crosses_inside(edge, sum))
     return {};
-  return {true, dot(bc, at[0]), sum, t.unit / t.dir_unit, zeros};
+  return {true, dot(bc, at[0]), sum, t.unit / t.dir_unit};
 }
 
 ExactCrossing cross_expansions(const ExactRay& ray, const float (&corner)[3][3]) {
@@ -173,8 +169,7 @@ ExactCrossing cross_expansions(const ExactRay& ray, const float (&corner)[3][3])
     return dot(i == 0 ? bc : cross(at[(i + 1) % 3], at[(i + 2) % 3]), ray.dir);
   };
   Expansion sum;
-  unsigned zeros = 0;
-  if (!crosses_inside(edge, sum, zeros))
+  if (!crosses_inside(edge, sum))
     return {};
   return {dot(bc, at[0]), sum};
 }
@@ -231,11 +226,6 @@ class CrossingMemo {
   Entry entry_[kEntries];
 };
 
-CrossingMemo& memo_of_thread() {
-  static thread_local CrossingMemo memo;
-  return memo;
-}
-
 ExactCrossing beyond_start(const ExactRay& ray, const ExactCrossing& found) {
   return found.some() && found.compare(ray.t_min) > 0 ? found : ExactCrossing();
 }
@@ -247,7 +237,7 @@ ExactCrossing beyond_start(const ExactRay& ray, const IntegerCrossing& t) {
 }  // namespace
 
 ExactCrossing cross_triangle(const ExactRay& ray, const float (&corner)[3][3]) {
-  CrossingMemo& memo = memo_of_thread();
+  static thread_local CrossingMemo memo;
   if (const IntegerCrossing* const known = memo.find(ray, corner))
     return beyond_start(ray, *known);
   IntegerTriangle integers;
@@ -256,48 +246,6 @@ ExactCrossing cross_triangle(const ExactRay& ray, const float (&corner)[3][3]) {
   const IntegerCrossing found = cross_integers(integers);
   memo.keep(ray, corner, found);
   return beyond_start(ray, found);
-}
-
-namespace {
-
-/// The corners, one or two, of the vertex or edge of a triangle that a ray passes through; none if
-/// it passes inside.
-struct CrossedCorners {
-  const float* at[2] = {};
-  int count = 0;
-
-  CrossedCorners(unsigned zeros, const float (&corner)[3][3]) {
-    if (zeros == 0)
-      return;
-    const bool is_edge = (zeros & (zeros - 1)) == 0;
-    for (int i = 0; i < 3; ++i)  // a corner lies on the two edges that are not opposite to it
-      if (((zeros >> i & 1) == 0) != is_edge)
-        at[count++] = corner[i];
-  }
-  bool has(const float* p) const {
-    const auto is_same = [p](const float* q) {
-      return p[0] == q[0] && p[1] == q[1] && p[2] == q[2];
-    };
-    return is_same(at[0]) || is_same(at[count - 1]);
-  }
-  bool is_same(const CrossedCorners& o) const {
-    return count > 0 && count == o.count && has(o.at[0]) && has(o.at[count - 1]);
-  }
-};
-
-}  // namespace
-
-bool cross_together(const ExactRay& ray,
-                    const float (&corner)[3][3],
-                    const float (&other)[3][3],
-                    ExactCrossing& found) {
-  const IntegerCrossing* const one = memo_of_thread().find(ray, corner);
-  const IntegerCrossing* const two = one ? memo_of_thread().find(ray, other) : nullptr;
-  if (!two || !one->some || !two->some ||
-      !CrossedCorners(one->zeros, corner).is_same(CrossedCorners(two->zeros, other)))
-    return false;
-  found = ExactCrossing(one->numerator, one->denominator, one->unit);
-  return true;
 }
 
 namespace {

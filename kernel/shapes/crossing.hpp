@@ -62,12 +62,6 @@ class ExactCrossing {
 /// From either side, edges and corners included. Rays in the plane of a triangle, and triangles
 /// without an area, do not cross.
 ExactCrossing cross_triangle(const ExactRay& ray, const float (&corner)[3][3]);
-/// True if a ray is known to cross two triangles at a vertex or an edge that both have, and so at
-/// one t: `found`. What cross_triangle() found last is known.
-bool cross_together(const ExactRay& ray,
-                    const float (&corner)[3][3],
-                    const float (&other)[3][3],
-                    ExactCrossing& found);
 /// Weights of the corners where a ray crosses a triangle, given that it does: each within 2^-30,
 /// none negative.
 void crossing_weights(const ExactRay& ray, const float (&corner)[3][3], double (&weight)[3]);

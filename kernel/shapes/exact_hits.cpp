@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "kernel/shapes/axis_crossing.hpp"
 #include "kernel/shapes/rounding.hpp"
 
 namespace grelha {
@@ -17,7 +18,7 @@ using One = typename Shape::template Fields<float>;
 template <class Shape>
 scalar::HitInterval<double> double_interval(const ExactRay& ray, const One<Shape>& one) {
   if constexpr (Shape::kKind == PrimitiveKind::kTriangle) {
-    return scalar::bound_triangle(ray, one.corner);
+    return bound_crossing(ray, one.corner);
   } else {
     const scalar::SimdRays<double> wide = scalar::in_double(ray);
     return scalar::bound(wide, scalar::fields_to_double<Shape, 0, float>(one), kNoEnd);
@@ -45,20 +46,6 @@ CrossingSpan span_of(const ExactRay& ray, const One<Shape>& primitive, double sh
   return scalar::refine_span(double_interval<Shape>(ray, primitive), shift, [&] {
     return crossing_of<Shape>(ray, primitive);
   });
-}
-
-/// True if both are triangles that a ray crosses at a vertex or an edge that both have.
-bool cross_together(const GeometryView& g,
-                    const ExactRay& ray,
-                    std::uint32_t id,
-                    std::uint32_t other,
-                    ExactCrossing& at) {
-  const std::uint32_t first = g.ids.begin(PrimitiveKind::kTriangle);
-  if (!g.ids.has(PrimitiveKind::kTriangle, id) || !g.ids.has(PrimitiveKind::kTriangle, other))
-    return false;
-  const One<Triangle> a = g.of<Triangle>().triangle(id - first);
-  const One<Triangle> b = g.of<Triangle>().triangle(other - first);
-  return cross_together(ray, a.corner, b.corner, at);
 }
 
 }  // namespace
@@ -92,16 +79,24 @@ CrossingSpan crossing_span(const GeometryView& g,
       g, id, [&]<class Shape>(const One<Shape>& one) { return span_of<Shape>(ray, one, shift); });
 }
 
+bool meet_on_axis(const GeometryView& g,
+                  const ExactRay& ray,
+                  std::uint32_t id,
+                  std::uint32_t other) {
+  const std::uint32_t first = g.ids.begin(PrimitiveKind::kTriangle);
+  if (!g.ids.has(PrimitiveKind::kTriangle, id) || !g.ids.has(PrimitiveKind::kTriangle, other))
+    return false;
+  const One<Triangle> a = g.of<Triangle>().triangle(id - first);
+  const One<Triangle> b = g.of<Triangle>().triangle(other - first);
+  return AxisEdges::meet(AxisEdges(ray, a.corner), a.corner, AxisEdges(ray, b.corner), b.corner);
+}
+
 bool is_closest(const GeometryView& g,
                 const ExactRay& ray,
                 std::uint32_t id,
                 std::uint32_t other,
                 double shift,
                 CrossingSpan& first) {
-  if (ExactCrossing at; cross_together(g, ray, id, other, at)) {
-    first = scalar::span_of(at, shift);
-    return id < other;
-  }
   const scalar::HitInterval<double> a = double_interval(g, ray, id);
   const scalar::HitInterval<double> b = double_interval(g, ray, other);
   if (a.sure && b.sure && (a.hi < b.lo || b.hi < a.lo)) {

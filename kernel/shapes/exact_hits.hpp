@@ -36,6 +36,12 @@ bool is_closest(const GeometryView& g,
                 std::uint32_t other,
                 double shift,
                 CrossingSpan& first);
+/// True if a ray along an axis, which crosses two triangles, does so at a vertex or an edge that
+/// both have, at one t.
+bool meet_on_axis(const GeometryView& g,
+                  const ExactRay& ray,
+                  std::uint32_t id,
+                  std::uint32_t other);
 /// True if a ray crosses a primitive before t_max, given that it crosses it beyond t_min.
 bool is_before_end(const GeometryView& g, const ExactRay& ray, std::uint32_t id);
 /// Barycentric coordinates where a ray crosses a triangle, given that it does: those of Hits.

@@ -1,5 +1,7 @@
 #include "kernel/shapes/triangle.hpp"
 
+#include "kernel/shapes/axis_crossing.hpp"
+
 namespace grelha {
 
 bool Triangle::is_even(const TriangleSpans& spans) {
@@ -48,7 +50,7 @@ CrossingSpan triangle_span(const ExactRay& ray, const float (&corner)[3][3], dou
       is_same_point(corner[2], corner[0]))
     return {};
   return scalar::refine_span(
-      scalar::bound_triangle(ray, corner), shift, [&] { return cross_triangle(ray, corner); });
+      bound_crossing(ray, corner), shift, [&] { return cross_triangle(ray, corner); });
 }
 
 }  // namespace grelha

@@ -11,6 +11,8 @@ namespace grelha::GRELHA_ISA {
     const RayFrame& frame, int i, std::uint32_t held, std::uint32_t id, CrossingSpan& span) {
   const ExactRay ray = frame.given.ray(i);
   const double shift = frame.given.shift_of(i);
+  if (held != kNoPrimitive && meet_on_axis(*frame.geometry, ray, id, held))
+    return id < held ? id : held;  // `span` holds t of both
   if (held != kNoPrimitive)
     return is_closest(*frame.geometry, ray, id, held, shift, span) ? id : held;
   if (!is_before_end(*frame.geometry, ray, id))
