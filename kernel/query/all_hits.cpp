@@ -41,10 +41,8 @@ class HitList : public ListedRay {
           crossings_.back().id = id;
         });
     }
-    if (crossings_.size() > 1)
-      std::sort(crossings_.begin(), crossings_.end(), [this](const Crossing& a, const Crossing& b) {
-        return is_before(a, b);
-      });
+    sort_crossings(crossings_,
+                   [this](const Crossing& a, const Crossing& b) { return is_before(a, b); });
     for (const Crossing& c : crossings_) {
       const auto exactly = [&](const ExactRay& ray) {
         return rounded_t(scene_.geometry, ray, c.original);

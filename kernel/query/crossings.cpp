@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <limits>
 #include <vector>
 
@@ -43,11 +42,9 @@ class CrossingList : public ListedRay {
         found_.push_back(one);
       });
     }
-    if (found_.size() > 1)
-      std::stable_sort(
-          found_.begin(), found_.end(), [this](const CrossedTriangle& a, const CrossedTriangle& b) {
-            return is_before(a, b);
-          });
+    sort_crossings(found_, [this](const CrossedTriangle& a, const CrossedTriangle& b) {
+      return is_before(a, b);
+    });
     for (const CrossedTriangle& f : found_)
       crossings.push_back({t_of(f), f.id, is_crossed_inwards(scaled(), corners(f).corner)});
   }

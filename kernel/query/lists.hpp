@@ -148,6 +148,24 @@ void count_each(const World& world,
   });
 }
 
+/// Sorts crossings by is_before(), which tells the order of two whose intervals overlap. Most do
+/// not: they are sorted by their lower ends first.
+template <class Item, class IsBefore>
+void sort_crossings(std::vector<Item>& items, const IsBefore& is_before) {
+  std::sort(items.begin(), items.end(), [](const Item& a, const Item& b) {
+    return a.lo != b.lo ? a.lo < b.lo : a.id < b.id;
+  });
+  for (std::size_t i = 1; i < items.size(); ++i) {
+    if (items[i - 1].hi < items[i].lo)
+      continue;
+    const Item one = items[i];
+    std::size_t to = i;
+    for (; to > 0 && is_before(one, items[to - 1]); --to)
+      items[to] = items[to - 1];
+    items[to] = one;
+  }
+}
+
 /// Puts what a List finds of each ray one after another; offset[i]: where that of ray i begins,
 /// [count + 1].
 template <class List, class Item>
