@@ -99,7 +99,7 @@ void add_view(CLI::App& app, ViewOptions& view) {
   add("--angle", "DEG", "vertical field of view", [&](Text t) { view.angle_deg = angle(t); });
   add("--orbit",
       "A,E,Z",
-      "degrees to the right (180: behind), degrees up [0], zoom [1]",
+      "degrees to the right (180: behind), up [0]; zoom [1]",
       [&](Text t) { view.orbit = orbit(t); });
   add("--orthographic",
       "HEIGHT",
