@@ -97,10 +97,9 @@ void add_view(CLI::App& app, ViewOptions& view) {
   place("--at", "the point it looks at", view.at);
   place("--up", "the direction that is up", view.up);
   add("--angle", "DEG", "vertical field of view", [&](Text t) { view.angle_deg = angle(t); });
-  add("--orbit",
-      "A,E,Z",
-      "degrees to the right (180: behind), up [0]; zoom [1]",
-      [&](Text t) { view.orbit = orbit(t); });
+  add("--orbit", "A,E,Z", "degrees to the right (180: behind), up [0]; zoom [1]", [&](Text t) {
+    view.orbit = orbit(t);
+  });
   add("--orthographic",
       "HEIGHT",
       "parallel rays, and how much the picture shows, scene units",

@@ -1,6 +1,6 @@
 #pragma once
-// Rays along axes, which meet vertices and edges of regular meshes: doubles hold their edge functions
-// exactly where differences of coordinates are as short as floats.
+// Rays along axes, which meet vertices and edges of regular meshes: doubles hold their edge
+// functions exactly where differences of coordinates are as short as floats.
 
 #include "kernel/shapes/triangle.hpp"
 

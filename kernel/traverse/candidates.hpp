@@ -18,8 +18,8 @@ struct Candidate {
   std::uint8_t sure;
 };
 
-/// What rays are asked for: what they cross; triangles alone; or those and the spheres in which they
-/// start.
+/// What rays are asked for: what they cross; triangles alone; or those and the spheres in which
+/// they start.
 enum class Wanted { kAll, kTriangles, kTrianglesAndSpheresAround };
 
 /// Takes the candidates of rays, packet by packet.

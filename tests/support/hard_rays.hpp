@@ -89,7 +89,7 @@ class HardRays {
     }
   }
 
-  /// From a point on the mesh whose zeros are moved by less than normal floats hold, so that t is no
+  /// From a point on the mesh whose zeros are moved by less than normal floats hold. So t is no
   /// normal float.
   Ray from_beside_zeros() {
     const Float3 target = point_on_mesh();
