@@ -23,7 +23,7 @@ DOCS = ROOT / "docs"
 PAGES = [ROOT / "README.md", *sorted(DOCS.glob("*.md"))]
 SECTIONS = {  # what a section's maker measures, by its marks
     "frame, profile": "frame-profile", "frame, povray": "frame-povray", "report": "report",
-    "scale": "scale", "stability": "stability", "ranks": "ranks", "error_suite": "error-suite",
+    "stability": "stability", "ranks": "ranks", "error_suite": "error-suite",
     "charts, picture": "charts-picture", "charts, grid": "charts-grid",
     "charts, features": "charts-features", "exact": "exact",
 }

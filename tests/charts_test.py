@@ -189,11 +189,11 @@ def figure_of(name):
             module.draw(known, pathlib.Path(folder) / "chart.svg")
         return close.call_args[0][0]
     rows = {
-        "scale": ["scale"], "frame": ["frame-profile"], "ranks": ["ranks-pieces", "ranks"],
+        "frame": ["frame-profile"], "ranks": ["ranks-pieces", "ranks"],
         "report": ["report"]
     }[name]
     known = module.from_csv(*map(bench.read_csv, rows))
-    module.draw(saved, *(known if name in ("scale", "ranks") else [known]))
+    module.draw(saved, *(known if name == "ranks" else [known]))
     return saved.figure
 
 
@@ -205,7 +205,7 @@ def words_of(figure):
 
 class Benchmarks(unittest.TestCase):
     """The other charts of docs/."""
-    names = ("trace", "build", "scale", "frame", "ranks", "report")
+    names = ("trace", "build", "frame", "ranks", "report")
 
     @classmethod
     def setUpClass(cls):
@@ -240,7 +240,6 @@ class Benchmarks(unittest.TestCase):
                 {words
                  for words in words_of(figure)
                  if re.search(r"\btargets?\b", words)}, name)
-        self.assertTrue(all(axes.get_ylabel() for axes in self.figures["scale"].axes))
 
     def test_no_two_series_share_a_marker(self):
         for name, figure in self.figures.items():
