@@ -21,10 +21,9 @@ from datetime import date
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
-from bench import (DOCS, ROOT, Bench, arguments, commit, cores, cpu_name, plt, read_csv, table,
+from bench import (DOCS, ROOT, Bench, arguments, cores, cpu_name, plt, read_csv, table,
                    times)
 from nff_to_pov import convert
-from tachyon import Tachyon
 
 SIDE, DEPTH = 512, 5
 LONG = 8  # seconds of rendering a thing is given; at least one run, at most as many as rounds
@@ -135,42 +134,9 @@ def profile(bench, scenes):
     return got
 
 
-def compare_tachyon(bench):
-    """Plain pictures by both programs taking turns, one thread; what it builds counts."""
-    tachyon = Tachyon(bench.folder, SIDE)
-    if not tachyon.program:
-        print("no comparison: Tachyon is not installed")
-        return
-    rows = []
-    for name, generator in (("balls 3", ("balls", 3)), ("balls 4", ("balls", 4)),
-                            ("mount 6", ("mount", 6)), ("mount 8", ("mount", 8))):
-        scene = bench.scene(*generator)
-        ours, theirs = [], []
-        for _ in range(bench.rounds):
-            run = grelha(bench, scene, PLAIN, 1)
-            ours.append(run["build"] + run["cpu"])
-            theirs.append(tachyon.render(scene.read_text(), DEPTH))
-        rmse = alike(bench, "tachyon.png")
-        rows.append([name, f"{min(ours):.3f}", f"{min(theirs):.3f}",
-                     times(min(theirs) / min(ours)), f"{rmse:.3f}"])
-        shutil.copy(bench.folder / "tachyon.png", bench.folder / f"{name}, tachyon.png")
-        shutil.copy(bench.folder / "ours.png", bench.folder / f"{name}, ours.png")
-    bench.section(f"""### Beside Tachyon
-
-Debian's Tachyon, which walks grids as well. Seconds of building and tracing on one thread, plain
-pictures of {SIDE} x {SIDE}, depth {DEPTH}, the least of {bench.rounds} runs by turns. {cpu_name()},
-{date.today():%B %Y}, {commit()}. Its glass bends no light, its highlights are others. It has no
-cones: trees are left out.
-
-{table(["", "Grelha, s", "Tachyon, s", "Tachyon / Grelha", "RMSE between both"], rows)}
-
-`./run perf frame --only tachyon --keep`
-""", "tachyon")
-
-
 def main():
     parser = arguments(__doc__, rounds=5)
-    parser.add_argument("--only", choices=("profile", "povray", "tachyon"),
+    parser.add_argument("--only", choices=("profile", "povray"),
                         help="this part alone")
     asked = parser.parse_args()
     bench = Bench("frame", asked)
@@ -180,10 +146,6 @@ def main():
     scenes = [(name, bench.scene(*generator), side, lens) for name, generator, side, lens in SCENES]
     if asked.only in (None, "profile"):
         make_profile(bench, scenes)
-    if asked.only in (None, "tachyon"):
-        compare_tachyon(bench)
-    if asked.only == "tachyon":
-        return
     povray = Povray(bench.folder)
     if asked.only == "profile" or not povray.program:
         print("no comparison: POV-Ray "
