@@ -21,8 +21,7 @@ from datetime import date
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
-from bench import (DOCS, ROOT, Bench, arguments, cores, cpu_name, plt, read_csv, table,
-                   times)
+from bench import DOCS, ROOT, Bench, arguments, cores, cpu_name, plt, read_csv, table, times
 from nff_to_pov import convert
 
 SIDE, DEPTH = 512, 5
