@@ -3,13 +3,6 @@
 //
 // judge SUBJECT [--count N] [--scene NAME]...
 //
-//   rays      a million rays each at vertices, at edges, along edges, in planes and at random, from
-//             .8 to 1e4 diagonals away, at scans, closed meshes, slivers, copies and a lattice, in
-//             place and moved by 1e3 and 1e6 diagonals: hit or miss, id, t and the order of all
-//             hits are those of rational numbers (GMP)
-//   inside    1e5 points a closed mesh: the parity of crossings is the same along five random rays
-//             and one through a vertex, contains() says the same, and for every tenth point so do
-//             rational numbers
 //   rules     a million points at and around closed meshes, overlapping, doubled, inside out and
 //             thin, and open ones and loose triangles: insides by parity and by winding, and signs
 //             of distances, are those of rational numbers; winding numbers are within the error
@@ -41,9 +34,7 @@ struct Subject {
   std::size_t count;  ///< unless another is asked for
   std::size_t (*judge)(const JudgeOptions&);
 };
-constexpr Subject kSubjects[] = {{"rays", 1'000'000, judge_rays},
-                                 {"inside", 100'000, judge_inside},
-                                 {"rules", 1'000'000, judge_rules},
+constexpr Subject kSubjects[] = {{"rules", 1'000'000, judge_rules},
                                  {"distance", 100'000, judge_distance},
                                  {"queries", 1'000'000, judge_queries},
                                  {"agreement", 1'000'000, judge_agreement}};
@@ -70,7 +61,6 @@ int main(int argc, char** argv) {
       std::printf("%zu wrong\n", wrong);
       return wrong == 0 ? 0 : 1;
     }
-  std::fprintf(
-      stderr, "judge rays|inside|rules|distance|queries|agreement [--count N] [--scene NAME]...\n");
+  std::fprintf(stderr, "judge rules|distance|queries|agreement [--count N] [--scene NAME]...\n");
   return 2;
 }

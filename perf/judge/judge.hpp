@@ -14,23 +14,10 @@ struct JudgeOptions {
   std::vector<std::string> scenes;  ///< files; empty: the default ones
 };
 
-/// A mesh alone: the triangles of a file or of `GENERATOR SIZE`.
-Scene mesh_named(const std::string& name);
-/// The mesh moved by so many of its diagonals, aslant. Returns its diagonal and its middle.
-struct MovedMesh {
-  Scene scene;
-  double diagonal = 0;
-  Float3 middle{};
-};
-MovedMesh moved(Scene mesh, double diagonals);
 /// The closed meshes among the options' scenes or, without any, of the scans that are there and of
 /// the generators. A mesh is closed if each edge has as many triangles on one side as on the other.
 std::vector<std::pair<std::string, Scene>> closed_meshes(const JudgeOptions& options);
 
-/// First hits and all hits, in order, against rational numbers.
-std::size_t judge_rays(const JudgeOptions& options);
-/// Parity of crossings along five random rays and one through a vertex, and contains().
-std::size_t judge_inside(const JudgeOptions& options);
 /// Insides of closed meshes, overlapping, doubled, inside out and thin, and winding numbers of
 /// these, of open meshes and of loose triangles, against rational numbers and long double.
 std::size_t judge_rules(const JudgeOptions& options);

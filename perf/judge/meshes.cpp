@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <filesystem>
 #include <map>
 #include <utility>
@@ -52,8 +51,7 @@ std::vector<std::string> scans() {
   return names;
 }
 
-}  // namespace
-
+/// A mesh alone: the triangles of a file or of `GENERATOR SIZE`.
 Scene mesh_named(const std::string& name) {
   Scene s = scene_named(name).scene;
   s.geometry.spheres = {};
@@ -65,27 +63,7 @@ Scene mesh_named(const std::string& name) {
   return s;
 }
 
-MovedMesh moved(Scene mesh, double diagonals) {
-  MovedMesh m{std::move(mesh)};
-  Triangles& t = m.scene.geometry.triangles;
-  std::vector<float>* const all[] = {&t.x, &t.y, &t.z};
-  double lo[3], hi[3], squares = 0;
-  for (int a = 0; a < 3; ++a) {
-    lo[a] = *std::min_element(all[a]->begin(), all[a]->end());
-    hi[a] = *std::max_element(all[a]->begin(), all[a]->end());
-    squares += (hi[a] - lo[a]) * (hi[a] - lo[a]);
-  }
-  m.diagonal = std::sqrt(squares);
-  constexpr double kAslant[3] = {1, -.7, .4};
-  float* const middle[] = {&m.middle.x, &m.middle.y, &m.middle.z};
-  for (int a = 0; a < 3; ++a) {
-    const double by = diagonals * m.diagonal * kAslant[a];
-    for (float& x : *all[a])
-      x = static_cast<float>(x + by);
-    *middle[a] = static_cast<float>(.5 * (lo[a] + hi[a]) + by);
-  }
-  return m;
-}
+}  // namespace
 
 std::vector<std::pair<std::string, Scene>> closed_meshes(const JudgeOptions& options) {
   std::vector<std::pair<std::string, Scene>> closed;
