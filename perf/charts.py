@@ -1,20 +1,18 @@
 #!/usr/bin/env python3
-"""Charts of speed against accuracy, as CSV and SVG in docs/, and one page for all of them.
+"""Charts of speed against accuracy, as CSV and SVG in docs/.
 
     ./run charts [picture] [grid] [features] [--quick] [--rounds N] [--draw]
 
-Without a name, all. Every point tells the command that repeats it: in the CSV, in the SVG when the
-mouse rests on it, and in report.html, which opens without a network. --quick: smaller pictures,
-fewer points, and nothing kept in docs/. --draw: the charts and the page from the CSVs in docs/.
-Measurements are stored in the build folder beside the references, so the page shows all charts with
-small pictures, whichever chart was made last. References are rendered again when their scene or
-options change (delete charts/ there when the program draws other pictures).
+Without a name, all. Every point tells the command that repeats it: in the CSV, and in the SVG when
+the mouse rests on it. --quick: smaller pictures, fewer points, kept in the build folder and not in
+docs/. --draw: the charts from the CSVs in docs/. References are stored in the build folder and
+rendered again when their scene or options change (delete charts/ there when the program draws other
+pictures).
 """
 import argparse
 import csv
 import dataclasses
 import importlib
-import json
 import pathlib
 import resource
 import sys
@@ -27,7 +25,6 @@ from bench import (  # noqa: E402
     DOCS, DRAW_HELP, ROOT, cpu_name, put_section, read_csv, record, table)
 from chart import draw  # noqa: E402
 from image_error import Workshop  # noqa: E402
-from page import make_page  # noqa: E402
 
 NAMES = ("picture", "grid", "features")
 
@@ -63,18 +60,14 @@ def spent():
     return usage.ru_utime + usage.ru_stime
 
 
-def measured(name, module, shop, plan, kept):
+def measured(name, module, shop, plan):
     start, cpu = time.monotonic(), spent()
     result = module.measure(shop, plan)
     print(
         f"{name}: {time.monotonic() - start:.0f} s, of it {spent() - cpu:.0f} CPU seconds of what "
         "was measured",
         flush=True)
-    if result is None:
-        kept.unlink(missing_ok=True)
-    else:
-        told = f"{cpu_name()}; the least of {plan.rounds} renders or more. `./run charts {name}`"
-        kept.write_text(json.dumps({"told": told, "result": result}))
+    return result
 
 
 def wrapped(text):
@@ -84,53 +77,22 @@ def wrapped(text):
                        for block in text.split("\n\n"))
 
 
-def known(name, module, kept, out):
-    """Reads the CSV, with small pictures if they were measured here; None without a CSV."""
-    if not (out / f"charts-{name}.csv").exists():
-        return None
-    rows = read_csv(f"charts-{name}", out)
-    kept_rows = module.from_csv(rows)
-    here = json.loads(kept.read_text()) if kept.exists() else None
-    found = {
-        "words": module.tell(kept_rows, table), "result": kept_rows,
-        "told": f"Drawn from charts-{name}.csv. `./run charts {name}` measures it."
-    }
-    if here and [list(map(str, row))
-                 for row in module.csv(here["result"])[1]] == [list(row.values()) for row in rows]:
-        found |= here
-    return found
-
-
-def draw_all(charts, out, folder):
-    for chart in charts:
-        draw(chart, out / "images" / f"charts-{chart['name']}.svg",
-             folder / f"charts-{chart['name']}.png")
-
-
 def make(name, shop, asked, plan, out):
-    """Measures, tells and draws it where it is asked for; its words and charts, for the page."""
-    module, kept = importlib.import_module(name), shop.folder / f"{name}.json"
-    chosen = name in (asked.names or NAMES)
-    if chosen and not asked.draw:
-        measured(name, module, shop, plan, kept)
-        if kept.exists():
-            write_csv(out / f"charts-{name}.csv",
-                      *module.csv(json.loads(kept.read_text())["result"]))
-            if out == DOCS:
-                record(f"charts-{name}")
-        elif plan.quick:
-            (out / f"charts-{name}.csv").unlink(missing_ok=True)
-    found = known(name, module, kept, out)
-    if found is None:
-        return None
-    charts = module.charts(found["result"])
-    told = wrapped(f"{found['words']}\n\n{found['told']}")
-    if chosen:
-        draw_all(charts, out, shop.folder)
-        print(told, flush=True)
-    if chosen and out == DOCS and not asked.draw:
+    """Measures it unless asked only to draw, draws it and tells it."""
+    module = importlib.import_module(name)
+    where = f"Drawn from charts-{name}.csv. `./run charts {name}` measures it."
+    if not asked.draw:
+        write_csv(out / f"charts-{name}.csv", *module.csv(measured(name, module, shop, plan)))
+        where = f"{cpu_name()}; the least of {plan.rounds} renders or more. `./run charts {name}`"
+    result = module.from_csv(read_csv(f"charts-{name}", out))
+    for chart in module.charts(result):
+        draw(chart, out / "images" / f"charts-{chart['name']}.svg",
+             shop.folder / f"charts-{chart['name']}.png")
+    told = wrapped(f"{module.tell(result, table)}\n\n{where}")
+    print(told, flush=True)
+    if out == DOCS and not asked.draw:
+        record(f"charts-{name}")
         put_section(DOCS / "accuracy.md", "perf/charts.py", told, name)
-    return {"told": told, "charts": charts}
 
 
 def main():
@@ -156,13 +118,9 @@ def main():
     out = pictures.folder if plan.quick else DOCS
     for folder in (pictures.folder, out):
         (folder / "images").mkdir(exist_ok=True)
-    kinds = {
-        name: make(name, pictures if name == "picture" else timed, asked, plan, out)
-        for name in NAMES
-    }
-    page = pictures.folder / "report.html"
-    make_page(page, kinds)
-    print(f"{out}/charts-*.csv, {out}/images/charts-*.svg, {page}")
+    for name in asked.names or NAMES:
+        make(name, pictures if name == "picture" else timed, asked, plan, out)
+    print(f"{out}/charts-*.csv, {out}/images/charts-*.svg")
 
 
 if __name__ == "__main__":

@@ -8,7 +8,6 @@ Exit status 77: a package the charts need is missing.
 import csv
 import html
 import importlib.util
-import json
 import pathlib
 import re
 import subprocess
@@ -29,15 +28,11 @@ try:
     import features
     import grid
     import image_error
-    import page
     import picture
     import bench
     from bench import table
 except ImportError as missing:
     print(f"skipped: {missing}")
-    sys.exit(77)
-if not page.LIBRARY.exists():
-    print(f"skipped: no {page.LIBRARY}")
     sys.exit(77)
 
 
@@ -85,14 +80,6 @@ class Pictures(unittest.TestCase):
     def test_ssim_of_a_negative_is_below_zero(self):
         noise = np.random.default_rng(1).random((24, 24, 1)).repeat(3, axis=2)
         self.assertLess(image_error.ssim(noise, 1 - noise), -.9)
-
-    def test_a_crop_is_where_the_error_is(self):
-        with tempfile.TemporaryDirectory() as folder:
-            error = np.zeros((128, 128))
-            error[70:80, 100:110] = 1
-            at = picture.Crops(pathlib.Path(folder)).place(error)
-        self.assertEqual(error[at].shape, (picture.CROP, picture.CROP))
-        self.assertEqual(error[at].sum(), 100)
 
     def test_an_option_given_twice_counts_once(self):
         both = picture.joined(["--shadows", "random:2", "--lens", "4"], ["--shadows", "area:2,4"])
@@ -155,7 +142,6 @@ class Kept(unittest.TestCase):
                     for words in (panel["title"], panel["x"]["label"], panel["y"]["label"]):
                         self.assertTrue(words and html.escape(words, quote=False) in shown,
                                         f"{drawn['name']}: {words}")
-
 
     def test_the_tables_of_the_page_are_of_these_numbers(self):
         words = (ROOT / "docs/accuracy.md").read_text()
@@ -256,14 +242,6 @@ class Benchmarks(unittest.TestCase):
                      if len(labels) > 1}, name)
 
 
-class Page(unittest.TestCase):
-    def test_tables_become_tables(self):
-        self.assertEqual(
-            page.markdown("![x](x.svg)\n\nA < B\n\n" + table(["", "x"], [["a", "**1**"]])),
-            "<p>A &lt; B</p>\n"
-            "<table><tr><th></th><th>x</th></tr><tr><td>a</td><td><b>1</b></td></tr></table>")
-
-
 class Smoke(unittest.TestCase):
     """All charts of tiny pictures; then commands of their tables, as a reader types them."""
 
@@ -294,20 +272,6 @@ class Smoke(unittest.TestCase):
             titles = re.findall(r"<title>[^<]*\./run",
                                 (self.folder / f"images/charts-{name}.svg").read_text())
             self.assertGreaterEqual(len(titles), len(rows) // 2, name)
-
-    def test_the_page_has_every_chart_and_asks_for_nothing_from_outside(self):
-        words = (self.folder / "report.html").read_text()
-        data = json.loads(re.search(r'<script id="data"[^>]*>(.*?)</script>', words, re.S)[1])
-        self.assertEqual({c["name"] for c in data["charts"]},
-                         {"picture", "picture-ssim", "grid", "grid-memory", "features"})
-        for shown in data["charts"]:
-            series = [s for panel in shown["panels"] for s in panel["series"]]
-            names = {(s["look"], s["name"]) for s in series}
-            self.assertEqual(len(names), len({look for look, _ in names}), "one marker for two")
-            self.assertTrue(all("./run" in p["command"] for s in series for p in s["points"]))
-        self.assertTrue(data["pictures"])
-        self.assertTrue(all(p.startswith("data:image/webp;base64,") for p in data["pictures"]))
-        self.assertNotRegex(words, r"""<[^<>]*\b(?:src|href)=["']?(?!#)\w""")
 
     def test_commands_repeat_the_pictures_errors(self):
         rows = self.rows("picture")

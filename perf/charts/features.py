@@ -163,8 +163,7 @@ def charts(result):
     for scene in result["scenes"]:
         points = [{
             "x": share(scene, p), "y": names.index(p["label"]), "label": p["label"],
-            "command": p["command"],
-            "facts": f"{p['seconds'] * 1e3:.3g} ms, {share(scene, p):.2f} of everything"}
+            "command": p["command"]}
                   for p in scene["points"]]
         whole = scene["points"][0]["seconds"] * 1e3
         panels.append({
@@ -180,9 +179,7 @@ def charts(result):
         "name": "features",
         "title": f"{TITLE}: time with a feature left out, {result['size']}, {SAMPLES} samples a "
                  "pixel",
-        "columns": 4, "panel_size": (3.5, 3.3), "panels": panels,
-        "note": "All twins show the same picture; they differ in what they ask for. Where there is "
-                "no point the scene needs the feature."
+        "columns": 4, "panel_size": (3.5, 3.3), "panels": panels
     }]
 
 

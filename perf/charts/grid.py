@@ -132,11 +132,7 @@ def panel(title, y, series, x="M"):
 
 
 def point(x, y, p):
-    return {
-        "x": x, "y": y, "label": p["label"], "command": p["command"],
-        "facts": f"{p['ns']:.3g} ns a ray, build {p['build'] * 1e3:.3g} ms, "
-                 f"{p['bytes'] / 1024:.0f} KiB, "
-                 f"{p['bytes'] / p['primitives']:.3g} bytes a primitive"}
+    return {"x": x, "y": y, "label": p["label"], "command": p["command"]}
 
 
 def scene_series(scene, look, value):
@@ -170,13 +166,12 @@ def charts(result):
         packets.append({
             "name": scene["scene"], "look": look, "joined": True,
             "points": [point(n, p["ns"] / chosen["ns"], p) for n, p in sizes]})
-    note = "Whatever M and packet, the picture is the same, bit for bit; each run is checked."
     return [{
         "name": "grid", "title": f"Time of tracing against density M, {result['size']}",
-        "columns": 3, "panel_size": (3.7, 2.6), "note": note, "panels": times
+        "columns": 3, "panel_size": (3.7, 2.6), "panels": times
     }, {
         "name": "grid-memory", "title": "Memory, time to build, and packets", "columns": 3,
-        "panel_size": (4.3, 4), "note": note, "panels": [
+        "panel_size": (4.3, 4), "panels": [
             panel("memory of the grids", {"label": "bytes a primitive", "log": True}, memory),
             panel("building them, one thread", {"label": "nanoseconds a primitive", "log": True},
                   build),

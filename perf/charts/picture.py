@@ -7,9 +7,6 @@ take turns.
 """
 import math
 
-import numpy as np
-from PIL import Image
-
 from chart import pareto_front, slope
 from image_error import (REFERENCE_SEEDS, Refused, read_pfm, reference_settings, rmse, ssim,
                          time_to_reach)
@@ -19,7 +16,6 @@ NAME, TITLE = "picture", "Error of a picture against its time"
 SEED = 1
 REFERENCE = "reference: mean of two"  # its row in the CSV
 LEAST_SSIM = 1e-5  # 1 - SSIM: the CSV has five digits
-CROP = 64  # pixels a side
 COUNTS = [1, 4, 16, 64, 256]
 LONG = 3  # CPU seconds a point is given; at least one render, at most as many as rounds
 
@@ -78,41 +74,10 @@ def settings_of(effect, plan):
                 yield series, label, words
 
 
-class Crops:
-    """Crops of the pictures of an effect and of their errors, saved as small pictures: all show the
-    part where the first picture has the largest error."""
-
-    def __init__(self, folder):
-        self.folder, self.at = folder, None
-        folder.mkdir(exist_ok=True)
-
-    def place(self, error):
-        side = min(CROP, *error.shape)
-        sums = np.pad(error, ((1, 0), (1, 0))).cumsum(0).cumsum(1)
-        windows = (sums[side:, side:] - sums[:-side, side:] - sums[side:, :-side]
-                   + sums[:-side, :-side])
-        y, x = np.unravel_index(np.argmax(windows), windows.shape)
-        return np.s_[y:y + side, x:x + side]
-
-    def save(self, name, picture, reference):
-        error = np.abs(np.clip(picture, 0, 1) - np.clip(reference, 0, 1)).max(axis=2)
-        if self.at is None:
-            self.at = self.place(error ** 2)
-        shown = (np.clip(picture[self.at], 0, 1) * 255 + .5).astype(np.uint8)
-        # black at .001 and below, white at 1: three decades
-        grey = (np.clip(1 + np.log10(np.maximum(error[self.at], 1e-9)) / 3, 0, 1) * 255
-                + .5).astype(np.uint8)
-        paths = [self.folder / f"{name}-{kind}.webp" for kind in ("picture", "error")]
-        for path, pixels in zip(paths, (shown, grey)):
-            Image.fromarray(pixels).save(path, quality=85, method=6)
-        return [str(path) for path in paths]
-
-
 def measure_effect(shop, plan, effect, source, options):
     scene = shop.scene(source)
     reference, floor = shop.reference(scene, options, plan.reference)
     picture = shop.folder / "point.pfm"
-    crops = Crops(shop.folder / "crops")
     points, refused = {}, set()
     for turn in range(plan.rounds):
         for series, label, words in settings_of(effect, plan):
@@ -139,7 +104,6 @@ def measure_effect(shop, plan, effect, source, options):
                 point["samples"] = stats["rays"]["primary"] / math.prod(stats["size"])
                 point["rmse"], point["ssim"] = rmse(image, reference), ssim(image, reference)
                 point["command"] = shop.command(source, told)
-                point["crops"] = crops.save(f"{effect}-{len(points)}", image, reference)
     halves = [
         shop.command(source, reference_settings(options, plan.reference, seed))
         for seed in REFERENCE_SEEDS]
@@ -173,7 +137,7 @@ def csv(result):
 
 
 def from_csv(rows):
-    """The measurements in the format of docs/charts-picture.csv, without the small pictures."""
+    """The measurements in the format of docs/charts-picture.csv."""
     titles, effects = {name: title for name, title, *_ in EFFECTS}, {}
     for row in rows:
         effect = effects.setdefault(
@@ -198,10 +162,7 @@ def panel_of(effect, key, label):
     for name, look, _, _ in METHODS:
         points = [{
             "x": p["seconds"], "y": max(key(p), 1e-7),
-            "label": p["label"], "command": p["command"],
-            **dict(zip(("picture", "error"), p.get("crops", ()))),
-            "facts": f"RMSE {p['rmse']:.2g}, SSIM {p['ssim']:.4f}, {p['seconds']:.3g} CPU s, "
-                     f"{p['samples']:.3g} samples a pixel"
+            "label": p["label"], "command": p["command"]
         } for p in effect["points"] if p["series"] == name]
         if points:
             series.append({"name": name, "look": look, "joined": True, "points": points})
@@ -221,15 +182,12 @@ def charts(result):
         panel_of(e, lambda p: max(1 - p["ssim"], LEAST_SSIM), "1 - SSIM (.00001: that or less)")
         for e in result["effects"]
     ]
-    note = (
-        "Crops are of where one sample a pixel errs most; in error maps black is an error of .001 "
-        "or less, white one of 1, three decades evenly between.")
     return [{
         "name": "picture", "title": f"{TITLE}, {result['size']}: down and left is better",
-        "note": note, "panels": panels}, {
+        "panels": panels}, {
             "name": "picture-ssim",
             "title": f"Structural error against time, {result['size']}: down and left is better",
-            "note": note, "panels": alike}]
+            "panels": alike}]
 
 
 def finest_slope(points):

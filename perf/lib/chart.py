@@ -1,10 +1,10 @@
-"""A chart as plain data, drawn as SVG by Matplotlib, and by the page that page.py makes.
+"""A chart as plain data, drawn as SVG by Matplotlib.
 
-A chart is a dict: name, title, note, panels. A panel: title, x and y (dicts of label, and perhaps
+A chart is a dict: name, title, panels. A panel: title, x and y (dicts of label, and perhaps
 log, span, ticks, names: words for 0, 1, 2, ...), series, and perhaps front (points of the Pareto
 front), lines (dicts of x or y and label). A series: name, look (index into LOOKS), joined, points;
 no two series of a chart have the same look. A point: x, y, label, command, and perhaps star (it is
-marked), picture and error (files to show beside it).
+marked).
 """
 import dataclasses
 import math
@@ -14,7 +14,6 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullFormatter
 
 from bench import plt
-
 
 
 @dataclasses.dataclass(frozen=True)
