@@ -9,12 +9,15 @@ add_test(NAME docs COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/with_python.sh
   ${PROJECT_SOURCE_DIR}/docs/make_site.py ${CMAKE_CURRENT_BINARY_DIR}/docs)
 add_test(NAME architecture COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/with_python.sh
   ${PROJECT_SOURCE_DIR}/docs/architecture.py --check)
-# Files and symbols that docs and comments name are there. The self test plants some that are not.
-set(references sh ${CMAKE_CURRENT_LIST_DIR}/with_python.sh ${CMAKE_CURRENT_LIST_DIR}/references.py)
-add_test(NAME references COMMAND ${references} ${PROJECT_SOURCE_DIR})
-add_test(NAME references_self_test COMMAND ${references} --self-test)
-set_tests_properties(docs architecture references references_self_test PROPERTIES
-  LABELS build SKIP_RETURN_CODE 77)
+# Files and test cases that docs and comments name are there, and includes point one way. The self
+# tests plant offences.
+foreach(rule references layering)
+  set(command sh ${CMAKE_CURRENT_LIST_DIR}/with_python.sh ${CMAKE_CURRENT_LIST_DIR}/${rule}.py)
+  add_test(NAME ${rule} COMMAND ${command} ${PROJECT_SOURCE_DIR})
+  add_test(NAME ${rule}_self_test COMMAND ${command} --self-test)
+  set_tests_properties(${rule} ${rule}_self_test PROPERTIES LABELS build SKIP_RETURN_CODE 77)
+endforeach()
+set_tests_properties(docs architecture PROPERTIES LABELS build SKIP_RETURN_CODE 77)
 
 # Figures of prose are those of the CSVs, and each CSV says of what commit and machine it is.
 add_test(NAME figures COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/with_python.sh

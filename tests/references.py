@@ -70,7 +70,7 @@ def complaints(root):
 
 
 PLANTED = {  # a file and its text; wrong are those that hold "gone"
-    "kernel/plan.cpp": "int a;  // see town.cmake\nauto u = \" // docs/gone.md\";\n// see gone.hpp\n"
+    "kernel/plan.cpp": "int a;  // see town.cmake\nu = \" // docs/gone.md\";\n// see gone.hpp\n"
                        "// docs/page.md, NAME.hpp, docs/gone.md\n",
     "kernel/town.cmake": "# of plan.cpp, not gone.cpp\n",
     "tests/plan_test.cpp": "TEST(Plan, HasGrids) {}\n",
