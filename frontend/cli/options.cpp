@@ -236,7 +236,7 @@ void add_sample_counts(CLI::App& sub, RenderCommand& command) {
 void add_sample_locations(CLI::App& sub, Effects& effects) {
   value(sub,
         "--sampler",
-        "sobol|blue|jitter|unshuffled|random",
+        "sobol|blue|jitter|random",
         "where they lie [sobol]",
         [&effects](Text text) { effects.sampler = choice("--sampler", text, kSamplers); });
   value(sub, "--seed", "N", "another seed, an independent picture [0]", [&effects](Text text) {

@@ -25,7 +25,6 @@ using SamplerName = std::pair<std::string_view, Sampler>;
 inline constexpr std::array kSamplers{SamplerName{"sobol", Sampler::kSobol},
                                       SamplerName{"blue", Sampler::kBlue},
                                       SamplerName{"jitter", Sampler::kJitter},
-                                      SamplerName{"unshuffled", Sampler::kUnshuffled},
                                       SamplerName{"random", Sampler::kRandom}};
 std::string sampler_name(Sampler sampler);
 

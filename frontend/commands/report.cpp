@@ -23,10 +23,6 @@ std::uint64_t peak_bytes() {
   return std::uint64_t(usage.ru_maxrss) * 1024;
 }
 
-double share(std::uint64_t part, std::uint64_t whole) {
-  return whole ? double(part) / double(whole) : 0;
-}
-
 __attribute__((format(printf, 1, 2))) std::string print(const char* format, ...) {
   char text[512];
   va_list arguments;
@@ -124,16 +120,6 @@ Json error_json(const RefineOptions& asked, const ErrorStats& e) {
           {"met", e.met},
           {"least", e.least},
           {"most", e.most}};
-}
-
-Json to_json(const RowCounts& rows) {
-  return {{"boxes", rows.boxes}, {"primitives", rows.primitives}};
-}
-
-Json packets_json(const TraceCounts& trace) {
-  return {{"formed", trace.packets.formed},
-          {"fell_back", trace.packets.packet_fallbacks},
-          {"lanes_busy", share(trace.packets.lanes_busy, trace.packets.lanes_issued)}};
 }
 
 Json to_json(const Seconds& seconds) {
@@ -272,10 +258,7 @@ std::string stats_json(const RenderCommand& command, const RunReport& report) {
   json["rays"] = to_json(render.rays);
   if (command.render.refine.on())
     json["error"] = error_json(command.render.refine, render.error);
-  json["visits"] = render.trace.visits;
   json["tests"] = to_json(render.trace.tests);
-  json["rows"] = to_json(render.trace.rows);
-  json["packets"] = packets_json(render.trace);
   json["seconds"] = to_json(report.seconds);
   json["phases"] = phases_json(render);
   json["bytes"] = {

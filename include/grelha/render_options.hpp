@@ -19,21 +19,15 @@ inline constexpr int kMostDepth = 4096, kMostSamples = 65536;
 enum class Sampler {
   kSobol,   ///< one Owen-scrambled Sobol sequence over the dimensions in use
   kJitter,  ///< a jittered grid for each pair of dimensions, shuffled after the first pair
-  // kJitter without shuffling: biased where two pairs interact; shows the effect of shuffling
-  kUnshuffled,
   kRandom,  ///< independent random numbers
   // one Owen-scrambled Sobol sequence for the whole picture; neighbouring pixels draw consecutive
   // runs of it: the same error as kSobol, distributed as blue noise
   kBlue
 };
 
-/// Returns true for the samplers that stratify samples in a grid.
-constexpr bool is_jittered(Sampler s) {
-  return s == Sampler::kJitter || s == Sampler::kUnshuffled;
-}
 /// Returns true for the samplers that need the number of samples per pixel in advance.
 constexpr bool is_counted_first(Sampler s) {
-  return is_jittered(s) || s == Sampler::kBlue;
+  return s == Sampler::kJitter || s == Sampler::kBlue;
 }
 
 /// Number and distribution of samples. Every sample is a pure function of (seed, pixel, sample,

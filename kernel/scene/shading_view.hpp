@@ -69,7 +69,7 @@ struct Strata {
 /// Which samples a picture takes. Only effects that are there get dimensions: pixel 2, then lens,
 /// light, gloss 2 each.
 struct SamplePlan {
-  enum Kind : int { kSobol, kJitter, kUnshuffled, kRandom, kBlue };
+  enum Kind : int { kSobol, kJitter, kRandom, kBlue };
   bool on = false;  ///< false: one ray through each pixel's centre and nothing to sample
   int samples = 1;  ///< a pixel
   Kind kind = kSobol;

@@ -268,8 +268,6 @@ inline PairOf<Real> sample_pairs(const SamplePlan& plan,
   const Word own = scatter(base, scatter(key, use));
   if (plan.kind == SamplePlan::kJitter)
     return jittered<Real>(own, index, strata, key | use);
-  if (plan.kind == SamplePlan::kUnshuffled)
-    return jittered<Real>(own, index, strata, Word{});
   if (plan.kind == SamplePlan::kRandom)
     return random_pair(own, index);
   const Word at = blue ? words_at(plan.places, pixel) * strata.count + index : index;

@@ -29,8 +29,6 @@ SamplePlan::Kind kind_of(Sampler sampler) {
   switch (sampler) {
     case Sampler::kJitter:
       return SamplePlan::kJitter;
-    case Sampler::kUnshuffled:
-      return SamplePlan::kUnshuffled;
     case Sampler::kRandom:
       return SamplePlan::kRandom;
     case Sampler::kBlue:

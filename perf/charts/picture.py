@@ -43,7 +43,6 @@ METHODS = [
     ("random: N samples", 0, fixed("random"), None),
     ("jitter: N samples (--aa jitter:√N)", 1, [(str(n * n), ["--aa", f"jitter:{n}"])
                                                for n in (1, 2, 4, 8, 16)], None),
-    ("jitter, unshuffled", 2, fixed("unshuffled"), ("shadows", "awning", "lens", "glossy", "all")),
     ("adaptive:0.1,D", 3, [(f"0.1,{d}", ["--aa", f"adaptive:0.1,{d}"])
                            for d in (1, 2, 3, 4, 5)], None),
     ("adaptive:T,3", 4, [(f"{t},3", ["--aa", f"adaptive:{t},3"])

@@ -242,7 +242,7 @@ const Line kWrong[] = {
     {"info a --jsno",
      "info: expected an option, found \"--jsno\"; did you mean --json? (see --help)"},
     {"render a --sampler sobl",
-     "--sampler: expected one of sobol, blue, jitter, unshuffled, random, found \"sobl\"; did you "
+     "--sampler: expected one of sobol, blue, jitter, random, found \"sobl\"; did you "
      "mean "
      "sobol?"},
     {"render a -o", "--output: 1 required FILE missing (see --help)"},
@@ -275,7 +275,7 @@ const Line kWrong[] = {
     {"render a --packet 8", "--packet: expected one of 1, 16, 64, 256, found \"8\""},
     {"render a --samples 0", "--samples: expected a whole number from 1 to 65536, found \"0\""},
     {"render a --sampler halton",
-     "--sampler: expected one of sobol, blue, jitter, unshuffled, random, found \"halton\""},
+     "--sampler: expected one of sobol, blue, jitter, random, found \"halton\""},
     {"render a --error 0", "--error: expected a number from 0.000001 to 1, found \"0\""},
     {"render a --error nan", "--error: expected a number from 0.000001 to 1, found \"nan\""},
     {"render a --time -1",

@@ -148,7 +148,7 @@ RunReport some_run() {
   report.height = 3;
   report.grids = {{{2, 3, 4}, 5, 6, 7}};
   report.render.rays = {12, 13, 14, 15};
-  report.render.trace = {16, {17, 18, 19, 20}, {23, 24}, {21, 22, 80, 60}};
+  report.render.trace.tests = {17, 18, 19, 20};
   report.render.threads = 2;
   report.render.isa = "avx2";
   report.seconds = {1, 2, 3, 4};
@@ -168,10 +168,7 @@ TEST(Stats, HoldWhatWasCounted) {
             Json::parse(R"([{"cells":[2,3,4],"occupied":5,"references":6,"bytes":7}])"));
   EXPECT_EQ(json["rays"],
             Json::parse(R"({"primary":12,"shadow":13,"reflection":14,"refraction":15})"));
-  EXPECT_EQ(json["visits"], 16);
   EXPECT_EQ(json["tests"], Json::parse(R"({"sphere":17,"triangle":18,"cone":19,"plane":20})"));
-  EXPECT_EQ(json["rows"], Json::parse(R"({"boxes":23,"primitives":24})"));
-  EXPECT_EQ(json["packets"], Json::parse(R"({"formed":21,"fell_back":22,"lanes_busy":0.75})"));
   EXPECT_EQ(json["seconds"],
             Json::parse(R"({"load":1.0,"build":2.0,"render":3.0,"write":4.0,"render_cpu":0.0})"));
   EXPECT_EQ(json["bytes"]["geometry"], 100);
@@ -189,10 +186,6 @@ TEST(Stats, RecordSubdivision) {
   command.render.subdivision = {true, .1f, 3};
   EXPECT_EQ(Json::parse(stats_json(command, {}))["options"]["adaptive"],
             Json::parse(R"({"threshold":0.1,"depth":3})"));
-}
-
-TEST(Stats, NoLaneIssuedIsNoneBusy) {
-  EXPECT_EQ(Json::parse(stats_json({}, {}))["packets"]["lanes_busy"], 0.0);
 }
 
 TEST(Info, JsonSaysWhatTheSceneHolds) {
