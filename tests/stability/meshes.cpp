@@ -21,10 +21,22 @@ struct Body {
   bool torus;
 };
 
+/// Triangles that name their own copies of the corners, in another order.
+Scene unshared(const Scene& shared) {
+  Scene scene = empty_scene();
+  const Triangles& t = shared.geometry.triangles;
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    const Float3 v[3] = {vertex(shared, t.a[i]), vertex(shared, t.b[i]), vertex(shared, t.c[i])};
+    add_triangle(scene, v[i % 3], v[(i + 1) % 3], v[(i + 2) % 3]);
+  }
+  return scene;
+}
+
 const std::vector<Body>& bodies() {
   static const std::vector<Body> all{{ball_mesh(50, 25), false},
                                      {ball_mesh(16, 16, .15), false},
                                      {ball_mesh(5, 3), false},
+                                     {unshared(ball_mesh(24, 12, .1)), false},
                                      {torus_mesh(40, 20, kTube), true}};
   return all;
 }

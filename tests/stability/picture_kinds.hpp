@@ -14,6 +14,5 @@ PictureCounts light_of_no_size(int size);
 PictureCounts roughness_of_nothing(int size);
 PictureCounts small_discs(int size);
 PictureCounts correlated(int size);
-PictureCounts one_picture(int size);
 
 }  // namespace grelha::stability

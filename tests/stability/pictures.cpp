@@ -39,10 +39,6 @@ std::vector<PictureRow> picture_rows() {
        "a penumbra across one pixel, 16 samples",
        "the mean over independent samples, 4 standard errors",
        correlated},
-      {"one picture",
-       "threads, packets, instruction sets, densities, mailboxes",
-       "the same bits",
-       one_picture},
   };
 }
 

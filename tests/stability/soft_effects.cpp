@@ -183,33 +183,4 @@ PictureCounts correlated(int size) {
   return c;
 }
 
-/// One picture for threads, packets, instruction sets, densities, mailboxes and rows by pieces.
-PictureCounts one_picture(int size) {
-  PictureCounts c;
-  Scene s = everything();
-  Camera cam = camera(size, {.3f, .5f, 3.5f}, {}, 45);
-  cam.aperture = .1;
-  cam.focus = 3;
-  RenderOptions o = samples(4);
-  o.depth = 4;
-  o.threads = 1;
-  o.isa = "scalar";
-  o.packet = 1;
-  o.mailbox = false;
-  const Image wanted = picture(s, cam, o);
-  for (const Isa& isa : isas()) {
-    if (!isa.is_supported)
-      continue;
-    for (const int packet : {1, 16, 64, 256})
-      for (const int threads : {1, 3}) {
-        o.isa = isa.name;
-        o.packet = packet;
-        o.threads = threads;
-        o.mailbox = packet != 16;
-        count_same(c, picture(s, cam, o, packet == 64 ? 2.f : 0.f), wanted, "one picture");
-      }
-  }
-  return c;
-}
-
 }  // namespace grelha::stability

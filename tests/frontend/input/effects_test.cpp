@@ -165,42 +165,6 @@ TEST(Gloss, SeesItsShareOfAHalfWhiteWorld) {
   }
 }
 
-TEST(Effects, GiveTheSameBitsEverywhere) {
-  const Scene s = everything();
-  Camera c;
-  c.eye = {.3f, .5f, 3.5f};
-  c.at = {0, 0, 0};
-  c.width = 37;
-  c.height = 21;
-  c.aperture = .1;
-  c.focus = 3;
-  for (const Sampler sampler : {Sampler::kSobol, Sampler::kJitter, Sampler::kRandom})
-    for (const int gloss : {0, 2}) {
-      RenderOptions o = samples(9, sampler);
-      o.sampling.glossy_rays = gloss;
-      o.depth = 4;
-      o.threads = 1;
-      o.isa = "scalar";
-      o.packet = 1;
-      const Image wanted = picture(s, c, o);
-      for (const Isa& isa : isas()) {
-        if (!isa.is_supported)
-          continue;
-        for (const int packet : {1, 16, 64, 256})
-          for (const int threads : {2, 7}) {
-            o.isa = isa.name;
-            o.packet = packet;
-            o.threads = threads;
-            const Image image = picture(s, c, o);
-            ASSERT_EQ(
-                std::memcmp(image.rgb.data(), wanted.rgb.data(), wanted.rgb.size() * sizeof(float)),
-                0)
-                << isa.name << ", packet " << packet << ", " << threads << " threads";
-          }
-      }
-    }
-}
-
 TEST(Effects, SeedsGiveIndependentPictures) {
   const Scene s = everything();
   Camera c;

@@ -58,29 +58,6 @@ TEST_P(Parts, RandomSplitsJoinToTheBitsOfTheWhole) {
   }
 }
 
-TEST_P(Parts, StoppedAnywhereGoesOnToTheSameBits) {
-  const Job job = make_job(GetParam());
-  const World world(job.file.scene, {});
-  RenderStats stats;
-  const Image whole = render(world, job.file.camera, job.options, stats);
-  Random random(7);
-  RenderOptions options = job.options;
-  int left = 0, calls = 0;
-  options.progress = [&](double) { return ++calls, --left > 0; };
-  Partial p{{"scene", "settings"}, make_accumulator(job.file.camera, options)};
-  for (bool complete = false; !complete;) {
-    left = 1 + static_cast<int>(random.below(3));
-    options.threads = 1 + static_cast<int>(random.below(3));
-    complete = accumulate(world, job.file.camera, options, p.sums, stats);
-    const TemporaryFolder folder;
-    write_partial(folder.file("x"), p, true);
-    EXPECT_EQ(folder.list(), "x");
-    p = read_partial(folder.file("x"));
-  }
-  EXPECT_EQ(static_cast<std::size_t>(calls), p.sums.done.size()) << "every piece once";
-  EXPECT_TRUE(same_bits(picture_so_far(p.sums), whole));
-}
-
 /// A thread that saves the work holds up no other: a render that is told to go on ends complete.
 TEST(LongParts, InterruptedByEveryPieceEndsComplete) {
   Job job = make_job({"balls", 1, ""});

@@ -91,33 +91,74 @@ TEST_P(Copies, ReturnTheScalarBits) {
   }
 }
 
-/// A call for one ray takes the best copy; the others are as right.
-TEST_P(Copies, AskOneRayAsInAStream) {
-  Random random(23);
-  const Scene sparse = triangles_at_corners(22, 2000);
-  RayList aimed;
-  for (std::uint32_t i = 0; i < 2000; ++i) {
-    const Float3 from = random.point(2);
-    aimed.add(from, minus(vertex(sparse, 3 * i), from));
-  }
-  for (const Scene& scene : {sparse, random_mixture(24, 600), random_spheres(25, 600)}) {
-    const World world(scene, {});
-    RayList rays = with_odd_values(random, rays_about(random, {}, 1, kManyRays), .05);
-    rays.add(rays_about(random, {}, 1e5, 200));
-    rays.add(aimed);
+/// Rays about a scene of unit size, some from so far away that the kernel moves them near, some
+/// invalid.
+RayList rays_of_every_kind(Random& random) {
+  RayList rays = with_odd_values(random, rays_about(random, {}, 1, kManyRays), .05);
+  rays.add(rays_about(random, {}, 1e5, 200));
+  rays.add({1e6f, 2e6f, -3e6f}, {-1, -2, 3});
+  rays.add({.5f, .25f, 2}, {0, 0, -1}, 1, 1);
+  rays.add({.5f, .25f, 2}, {0, 0, -1}, 2, 1);
+  return rays;
+}
+
+/// Compares calls for single rays with a stream of all rays.
+void expect_calls_like_streams(const Variant& variant,
+                               const Scene& scene,
+                               const RayList& rays,
+                               const char* name) {
+  for (const bool grid : {true, false}) {
+    const World world(scene, {.grid = grid});
     const Answers met = trace(*find_variant("scalar"), world, rays, {1, true}, Query::kClosest);
-    EXPECT_GT(hits_of(met), 100u);
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const Ray ray{rays.org(i), rays.dir(i), rays.t_min[i], rays.t[i]};
-      const Hit hit = variant().loops.closest_one(world.impl().view, ray, nullptr);
-      ASSERT_EQ(hit.id, met.id[i]) << rays.describe(i);
+      const Hit hit = variant.loops.closest_one(world.impl().view, ray, nullptr);
+      ASSERT_EQ(hit.id, met.id[i]) << name << ", " << rays.describe(i);
       ASSERT_EQ(std::bit_cast<std::uint32_t>(hit.t), std::bit_cast<std::uint32_t>(met.t[i]))
-          << rays.describe(i);
-      ASSERT_EQ(variant().loops.occluded_one(world.impl().view, ray, nullptr),
+          << name << ", " << rays.describe(i) << ", " << hit.t << " not " << met.t[i];
+      ASSERT_EQ(variant.loops.occluded_one(world.impl().view, ray, nullptr),
                 met.id[i] != kNoPrimitive)
-          << rays.describe(i);
+          << name << ", " << rays.describe(i);
     }
   }
+}
+
+/// A call for one ray takes the best copy; the others are as right.
+TEST_P(Copies, AskOneRayAsInAStream) {
+  Random random(12);
+  const RayList rays = rays_of_every_kind(random);
+  const auto expect_same = [&](const Scene& scene, const char* name) {
+    expect_calls_like_streams(variant(), scene, rays, name);
+  };
+  expect_same(empty_scene(), "nothing");
+  expect_same(random_spheres(12, 2000), "spheres");
+  expect_same(random_triangles(13, 2000), "triangles");
+  expect_same(random_mixture(14, 700), "mixture");
+  Scene planes = random_mixture(15, 200);
+  planes.geometry.planes.add({0, 0, -3}, {0, 1, 8}, 0);
+  planes.geometry.planes.add({0, -2, 0}, {0, 1, 0}, 0);
+  expect_same(planes, "planes");
+  expect_same(stadium(16, 300), "primitives in no grid");
+  Scene apart = ball_mesh(32, 16);
+  apart.geometry.objects.push_back({0, std::uint32_t(apart.geometry.triangles.size())});
+  add_triangles(apart, random, 100, 30, .1, 1);
+  ASSERT_GT(World(apart, {}).grids().size(), 1u);
+  expect_same(apart, "two grids");
+}
+
+TEST_P(Copies, LeapOverEmptyCellsWithOneRayAsInAStream) {
+  const Scene corners = triangles_at_corners(17, 2400);
+  const World world(corners, {});
+  const GridView& grid = world.impl().view.grids[0];
+  ASSERT_EQ(world.grids().size(), 1u);
+  ASSERT_GE(*std::max_element(grid.distance, grid.distance + grid.n[0] * grid.n[1] * grid.n[2]), 3);
+  Random random(18);
+  RayList rays;
+  for (std::uint32_t i = 0; i < 2400; ++i) {
+    const Float3 from = random.point(2);
+    rays.add(from, minus(vertex(corners, 3 * i), from));
+  }
+  expect_calls_like_streams(variant(), corners, rays, "corners of a cube");
 }
 
 /// Counts of rays of 0 to 70: every tail of every packet and register, and nothing written behind

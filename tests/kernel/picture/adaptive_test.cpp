@@ -193,43 +193,6 @@ Camera upon_everything() {
   return c;
 }
 
-TEST(Adaptive, GivesTheSameBitsEverywhere) {
-  const Scene s = everything();
-  for (const int samples : {1, 3}) {
-    RenderOptions o = adaptive(.1f, 2);
-    o.sampling.samples = samples;
-    o.sampling.light_rays = 2;
-    o.sampling.glossy_rays = samples == 1 ? 0 : 2;
-    o.depth = 4;
-    o.threads = 1;
-    o.isa = "scalar";
-    o.packet = 1;
-    Camera c = upon_everything();
-    c.width = 61;
-    c.height = 45;
-    const Rendered wanted = rendered(s, c, o);
-    EXPECT_GT(wanted.rays.primary, std::uint64_t(62 * 46 * samples));
-    EXPECT_EQ(wanted.rays.primary % std::uint64_t(samples), 0u);
-    for (const Isa& isa : isas()) {
-      if (!isa.is_supported)
-        continue;
-      for (const int packet : {1, 16, 64, 256})
-        for (const int threads : {1, 2, 7}) {
-          if (threads != 2 && packet != 64)
-            continue;  // threads do not see the packet
-          o.isa = isa.name;
-          o.packet = packet;
-          o.threads = threads;
-          const Rendered r = rendered(s, c, o);
-          ASSERT_TRUE(same_bits(r.image, wanted.image))
-              << isa.name << ", packet " << packet << ", " << threads << " threads";
-          EXPECT_EQ(r.rays.primary, wanted.rays.primary);
-          EXPECT_EQ(r.rays.total(), wanted.rays.total());
-        }
-    }
-  }
-}
-
 TEST(Adaptive, APointLooksTheSameAtEveryDepth) {
   const Scene s = everything();
   RenderOptions o = adaptive(1, 0);  // nothing differs by more than 1: never split
@@ -334,40 +297,6 @@ TEST(Adaptive, StopsAndSaysHowFarItIs) {
   }
   EXPECT_EQ(same + black, some.image.rgb.size() / 3) << "tiles are done, or black";
   EXPECT_GT(same, some.image.rgb.size() / 3 / 4);
-}
-
-TEST(Adaptive, StoppedAnywhereGoesOnToTheSameBits) {
-  const Scene s = everything();
-  Camera c = upon_everything();
-  c.width = 200;
-  c.height = 150;
-  c.aperture = .05;
-  RenderOptions o = adaptive(.1f, 2);
-  o.sampling.samples = 3;
-  const Rendered whole = rendered(s, c, o);
-  const World world(s, {});
-  Random random(5);
-  int left = 0, stops = 0;
-  o.progress = [&](double) { return --left > 0; };
-  SubdivisionState kept = make_subdivision(c.width, c.height);
-  RayCounts rays;
-  for (bool done = false; !done; ++stops) {
-    left = 1 + static_cast<int>(random.below(9));
-    o.threads = 1 + static_cast<int>(random.below(3));
-    SubdivisionState copy = kept;
-    RenderStats stats;
-    done = render_subdivided(world, c, o, copy, stats, [&] {  // goes on in place now and then
-      EXPECT_TRUE(is_valid(copy));
-      left = 1 + static_cast<int>(random.below(9));
-      ++stops;
-      return random.chance(.5);
-    });
-    kept = std::move(copy);
-    rays += stats.rays;
-  }
-  EXPECT_GE(stops, 4);
-  EXPECT_TRUE(same_bits(kept.image, whole.image));
-  EXPECT_EQ(rays.total(), whole.rays.total()) << "nothing twice";
 }
 
 TEST(Adaptive, RefusesBadOptions) {

@@ -1,10 +1,11 @@
 // One picture: the same bits for every number of threads, instruction set, packet size, mailbox,
-// density and grid.
+// density and grid, and however often it was stopped.
 #include <cstring>
 #include <sstream>
 
 #include "frontend/nff/nff_reader.hpp"
 #include "grelha/render.hpp"
+#include "kernel/picture/picture.hpp"
 #include "scenes/generators.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"
@@ -107,15 +108,14 @@ std::vector<Built> builds(const Scene& scene) {
 /// The plainest: scalar, one thread, one ray, no grid.
 Image plainest(const std::vector<Built>& worlds,
                const Camera& camera,
-               int depth,
-               RenderStats& stats) {
-  RenderOptions o;
-  o.depth = depth;
+               RenderOptions o,
+               RenderStats& stats,
+               SampleMaps* maps = nullptr) {
   o.threads = 1;
   o.packet = 1;
   o.isa = "scalar";
   o.mailbox = false;
-  return render(worlds.front().world, camera, o, stats);
+  return render(worlds.front().world, camera, o, stats, maps);
 }
 
 void expect_same_rays(const RayCounts& a, const RayCounts& b) {
@@ -125,11 +125,10 @@ void expect_same_rays(const RayCounts& a, const RayCounts& b) {
   EXPECT_EQ(a.refraction, b.refraction);
 }
 
-TEST_P(Determinism, OnePictureForEveryWayOfTracing) {
-  const Picture p = make();
-  const std::vector<Built> worlds = builds(p.scene);
+void expect_one_picture(const std::vector<Built>& worlds, const Camera& camera, RenderOptions o) {
   RenderStats first;
-  const Image wanted = plainest(worlds, p.camera, 5, first);
+  SampleMaps maps;
+  const Image wanted = plainest(worlds, camera, o, first, &maps);
   for (const Built& built : worlds)
     for (const Variant* v : variants()) {
       if (!v->is_supported())
@@ -139,19 +138,27 @@ TEST_P(Determinism, OnePictureForEveryWayOfTracing) {
           for (const int threads : {1, 2, 7}) {
             if (threads != 2 && (packet == 1 || !mailbox))
               continue;  // threads do not see the packet: the rest is covered
-            RenderOptions o;
             o.threads = threads;
             o.packet = packet;
             o.mailbox = mailbox;
             o.isa = v->name;
             RenderStats stats;
-            const Image image = render(built.world, p.camera, o, stats);
-            ASSERT_EQ(differing(image, wanted), 0u)
-                << built.name << ", " << v->name << ", packet " << packet << ", mailbox " << mailbox
-                << ", " << threads << " threads";
+            SampleMaps found;
+            const Image image = render(built.world, camera, o, stats, &found);
+            SCOPED_TRACE(testing::Message()
+                         << built.name << ", " << v->name << ", packet " << packet << ", mailbox "
+                         << mailbox << ", " << threads << " threads");
+            ASSERT_EQ(differing(image, wanted), 0u);
+            ASSERT_EQ(found.samples, maps.samples);
+            ASSERT_EQ(found.error, maps.error);
             expect_same_rays(stats.rays, first.rays);
           }
     }
+}
+
+TEST_P(Determinism, OnePictureForEveryWayOfTracing) {
+  const Picture p = make();
+  expect_one_picture(builds(p.scene), p.camera, {});
 }
 
 /// Multiplies all lengths by `scale`, a power of two.
@@ -215,7 +222,7 @@ TEST_P(Determinism, AtEveryDepth) {
   const std::string name = GetParam();
   for (const int depth : {1, 2, name == "balls" ? 40 : name == "mount" ? 16 : 8}) {
     RenderStats first;
-    const Image wanted = plainest(worlds, p.camera, depth, first);
+    const Image wanted = plainest(worlds, p.camera, {.depth = depth}, first);
     EXPECT_GE(first.rays.total(), last);
     last = first.rays.total();
     for (const Variant* v : variants()) {
@@ -246,7 +253,7 @@ TEST_P(Determinism, AtOddSizes) {
     p.camera.height = h;
     const std::vector<Built> worlds = builds(p.scene);
     RenderStats first;
-    const Image wanted = plainest(worlds, p.camera, 5, first);
+    const Image wanted = plainest(worlds, p.camera, {}, first);
     EXPECT_EQ(first.rays.primary, static_cast<std::uint64_t>(w * h));
     for (const int threads : {1, 7}) {
       RenderOptions o;
@@ -274,6 +281,118 @@ INSTANTIATE_TEST_SUITE_P(Scenes,
                          Determinism,
                          testing::Values("balls", "mount", "mixture", "parallel"),
                          [](const auto& p) { return std::string(p.param); });
+
+/// How samples are spent, on a picture of all effects.
+struct Method {
+  const char* name;
+  RenderOptions options;
+};
+void PrintTo(const Method& m, std::ostream* out) {
+  *out << m.name;
+}
+
+std::vector<Method> methods() {
+  RenderOptions o;
+  o.depth = 4;
+  o.sampling.samples = 9;
+  std::vector<Method> all;
+  const auto add = [&](const char* name, auto change) {
+    all.push_back({name, o});
+    change(all.back().options);
+  };
+  add("Sobol", [](RenderOptions&) {});
+  add("GlossRays", [](RenderOptions& m) { m.sampling.glossy_rays = 2; });
+  add("Jitter", [](RenderOptions& m) { m.sampling.sampler = Sampler::kJitter; });
+  add("Random", [](RenderOptions& m) { m.sampling.sampler = Sampler::kRandom; });
+  add("Blue", [](RenderOptions& m) { m.sampling.sampler = Sampler::kBlue; });
+  o.subdivision = {true, .1f, 2};
+  o.sampling.light_rays = 2;
+  add("Subdivided", [](RenderOptions& m) { m.sampling.samples = 1; });
+  add("SubdividedPoints", [](RenderOptions& m) {
+    m.sampling.samples = 3;
+    m.sampling.glossy_rays = 2;
+  });
+  o.subdivision = {};
+  o.sampling = {};
+  add("ByError", [](RenderOptions& m) { m.refine.error = .05; });
+  add("BySamples", [](RenderOptions& m) { m.refine.samples = 61 * 61 * 24; });
+  return all;
+}
+
+class Methods : public testing::TestWithParam<Method> {
+ protected:
+  Methods() {
+    camera_.eye = {.3f, .5f, 3.5f};
+    camera_.at = {0, 0, 0};
+    camera_.aperture = .1;
+    camera_.focus = 3;
+  }
+  void set_size(int width, int height) {
+    camera_.width = width;
+    camera_.height = height;
+  }
+  const Scene scene_ = everything();
+  Camera camera_;
+};
+
+TEST_P(Methods, OnePictureForEveryWayOfTracing) {
+  set_size(29, 19);
+  std::vector<Built> worlds;
+  worlds.push_back({"no grid", World(scene_, {.grid = false})});
+  worlds.push_back({"a dense grid", World(scene_, {.density = 3})});
+  expect_one_picture(worlds, camera_, GetParam().options);
+}
+
+/// Stopped after every few pieces, gone on with by other threads from a copy.
+TEST_P(Methods, StoppedAnywhereGoesOnToTheSameBits) {
+  set_size(157, 61);
+  const World world(scene_, {});
+  RenderOptions o = GetParam().options;
+  RenderStats all, stats;
+  SampleMaps wanted, maps;
+  const Image whole = render(world, camera_, o, all, &wanted);
+  Random random(3);
+  int left = 0, stops = 0;
+  const auto go_on = [&] { left = 1 + static_cast<int>(random.below(2)); };
+  o.progress = [&](double share) {
+    EXPECT_GT(left, 0) << "it was told to stop";
+    EXPECT_GE(share, 0);
+    EXPECT_LE(share, 1);
+    return --left > 0;
+  };
+  grelha::Picture kept(camera_, o);
+  RayCounts rays;
+  for (bool done = false; !done; ++stops) {
+    go_on();
+    o.threads = 1 + static_cast<int>(random.below(3));
+    grelha::Picture copy = kept;
+    done = copy.advance(world, camera_, o, stats, &maps, [&] {  // goes on in place now and then
+      EXPECT_TRUE(copy.is_valid());
+      go_on();
+      ++stops;
+      return random.chance(.5);
+    });
+    ASSERT_TRUE(copy.is_valid());
+    ASSERT_EQ(copy.is_finished(), done);
+    ASSERT_GE(copy.share_done(), kept.share_done());
+    kept = std::move(copy);
+    rays += stats.rays;
+  }
+  EXPECT_GE(stops, 4);
+  EXPECT_EQ(differing(kept.image(), whole), 0u);
+  EXPECT_EQ(maps.samples, wanted.samples);
+  EXPECT_EQ(maps.error, wanted.error);
+  EXPECT_EQ(stats.error.samples, all.error.samples);
+  EXPECT_EQ(stats.error.rounds, all.error.rounds);
+  EXPECT_EQ(rays.total(), all.rays.total()) << "nothing twice";
+  EXPECT_TRUE(kept.advance(world, camera_, o, stats, &maps)) << "nothing is left to do";
+  EXPECT_EQ(stats.rays.total(), 0u);
+  EXPECT_EQ(maps.error, wanted.error);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Methods, testing::ValuesIn(methods()), [](const auto& p) {
+  return std::string(p.param.name);
+});
 
 }  // namespace
 }  // namespace grelha::test

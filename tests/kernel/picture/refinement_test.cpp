@@ -177,36 +177,6 @@ TEST(Refinement, GivesIndependentPicturesForTwoSeeds) {
   EXPECT_LT(std::abs(ab) / std::sqrt(aa * bb), 4 / std::sqrt(300.));
 }
 
-TEST(Refinement, IsOnePictureForEveryWayOfTracing) {
-  for (const Case& c : cases(37)) {
-    const Outcome expected = refined(c, to_error(.05));
-    for (const Variant* v : variants()) {
-      if (!v->is_supported())
-        continue;
-      for (const int packet : {1, 16, 64, 256})
-        for (const bool grid : {true, false}) {
-          Case d = c;
-          d.options.isa = v->name;
-          d.options.packet = packet;
-          d.options.threads = packet == 16 ? 7 : 1;
-          const World world(d.file.scene, {.grid = grid, .density = packet == 1 ? 3.f : 0.f});
-          RenderOptions o = d.options;
-          o.refine = to_error(.05);
-          o.sampling.samples = 1;
-          RenderStats stats;
-          SampleMaps maps;
-          const Image image = render(world, d.file.camera, o, stats, &maps);
-          ASSERT_EQ(differing(image, expected.image), 0u)
-              << c.name << ' ' << v->name << ' ' << packet << ' ' << grid;
-          ASSERT_EQ(maps.samples, expected.maps.samples)
-              << c.name << ' ' << v->name << ' ' << packet << ' ' << grid;
-          ASSERT_EQ(maps.error, expected.maps.error)
-              << c.name << ' ' << v->name << ' ' << packet << ' ' << grid;
-        }
-    }
-  }
-}
-
 TEST(Refinement, RepeatsWhatATimeBought) {
   const Case c = std::move(cases(48).back());
   RefineOptions timed, again;
@@ -236,81 +206,13 @@ TEST(Refinement, RefusesWhatItCannotDo) {
   Case c = std::move(cases(16).front());
   EXPECT_THROW(refined(c, to_error(-1)), std::invalid_argument);
   EXPECT_THROW(refined(c, to_error(std::nan(""))), std::invalid_argument);
-  for (const Sampler counted : {Sampler::kJitter, Sampler::kUnshuffled, Sampler::kBlue}) {
+  for (const Sampler counted : {Sampler::kJitter, Sampler::kBlue}) {
     c.options.sampling.sampler = counted;
     EXPECT_THROW(refined(c, to_error(.1)), std::invalid_argument);
   }
   c.options.sampling.sampler = Sampler::kSobol;
   c.options.sampling.light_rays = 4;
   EXPECT_THROW(refined(c, to_error(.1)), std::invalid_argument);
-}
-
-TEST(Refinement, StopsWhenToldTo) {
-  const Case c = std::move(cases(48).back());
-  const World world(c.file.scene, {});
-  RenderOptions o = c.options;
-  o.refine = to_error(1e-5);
-  int calls = 0;
-  o.progress = [&](double share) {
-    EXPECT_GE(share, 0);
-    EXPECT_LE(share, 1);
-    return ++calls < 3;
-  };
-  RenderStats stats;
-  render(world, c.file.camera, o, stats);
-  EXPECT_EQ(calls, 3);
-}
-
-/// Stopped after every few chunks, gone on with by other threads from a copy: of the first round,
-/// of later ones, and of the last.
-TEST(Refinement, StoppedAnywhereGoesOnToTheSameBits) {
-  RefineOptions of_samples;
-  of_samples.samples = 61 * 61 * 24;
-  for (const RefineOptions& asked : {to_error(.02), of_samples})
-    for (const Case& c : cases(61)) {
-      SCOPED_TRACE(c.name);
-      const Outcome expected = refined(c, asked);
-      const World world(c.file.scene, {});
-      Random random(3);
-      RenderOptions o = c.options;
-      o.refine = asked;
-      o.sampling.samples = 1;
-      int left = 0, stops = 0;
-      o.progress = [&](double) { return --left > 0; };
-      Refinement kept = make_refinement(c.file.camera);
-      Outcome got;
-      RayCounts rays;
-      for (bool done = false; !done; ++stops) {
-        left = 1 + static_cast<int>(random.below(3));
-        o.threads = 1 + static_cast<int>(random.below(3));
-        Refinement copy = kept;
-        const auto rest = [&] {  // goes on in place now and then
-          EXPECT_TRUE(is_valid(copy));
-          left = 1 + static_cast<int>(random.below(3));
-          ++stops;
-          return random.chance(.5);
-        };
-        done = refine(world, c.file.camera, o, copy, got.stats, &got.maps, rest);
-        ASSERT_TRUE(is_valid(copy));
-        ASSERT_EQ(copy.finished, done);
-        ASSERT_GE(copy.share, kept.share);
-        kept = std::move(copy);
-        rays += got.stats.rays;
-      }
-      EXPECT_GE(stops, 4);
-      EXPECT_EQ(kept.share, 1);
-      EXPECT_EQ(differing(picture_so_far(kept), expected.image), 0u);
-      EXPECT_EQ(got.maps.samples, expected.maps.samples);
-      EXPECT_EQ(got.maps.error, expected.maps.error);
-      EXPECT_EQ(got.stats.error.samples, expected.stats.error.samples);
-      EXPECT_EQ(got.stats.error.rounds, expected.stats.error.rounds);
-      EXPECT_EQ(rays.total(), expected.stats.rays.total()) << "nothing twice";
-      EXPECT_EQ(kept.rays, rays.total());
-      EXPECT_TRUE(refine(world, c.file.camera, o, kept, got.stats, &got.maps))
-          << "nothing is left to do";
-      EXPECT_EQ(got.stats.rays.total(), 0u);
-      EXPECT_EQ(got.maps.error, expected.maps.error);
-    }
 }
 
 /// What the time before bought counts, and the picture is still the one of so many samples.
