@@ -217,17 +217,6 @@ class Crossings(unittest.TestCase):
         found = scene.list_intersections(rays)
         self.assertEqual(found["t_hit"].tolist(), [1e6, 1e6])
 
-    def test_parity_of_rays_that_touch(self):
-        vertices, faces = ball(4)
-        scene = scene_of((vertices, faces))
-        a, b = vertices[faces[:, 0]], vertices[faces[:, 1]]
-        aims = np.concatenate([vertices, (a + b) / 2, vertices[faces].mean(1)])
-        for axis in np.eye(3, dtype=np.float32):
-            touch = np.concatenate([aims - 3 * axis, np.broadcast_to(axis, aims.shape)], axis=1)
-            self.assertFalse((scene.count_intersections(touch).numpy() % 2).any())
-        inside = np.concatenate([np.zeros_like(aims), aims], axis=1)
-        self.assertTrue((scene.count_intersections(inside).numpy() == 1).all())
-
 
 class Degenerate(unittest.TestCase):
     def test_uv_give_the_point_back(self):

@@ -103,15 +103,6 @@ class Crossings(unittest.TestCase):
         np.testing.assert_allclose(where[:, 0], [-0.0048828125, 0.0048828125])
         self.assertEqual(len(ray.intersects_id(*line)[0]), 2)
 
-    def test_parity_of_rays_that_touch(self):
-        vertices, faces = ball(4)
-        ray = RayMeshIntersector(mesh_of(vertices, faces))
-        aims = np.concatenate([vertices, (vertices[faces[:, 0]] + vertices[faces[:, 1]]) / 2])
-        for axis in np.eye(3):
-            along = np.tile(axis, (len(aims), 1))
-            index = ray.intersects_location(aims - 3 * along, along)[1]
-            self.assertFalse((np.bincount(index, minlength=len(aims)) % 2).any())
-
 
 Named = collections.namedtuple("Named", "vertices faces")
 
