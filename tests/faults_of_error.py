@@ -3,21 +3,21 @@ from fault import Fault, tolerance
 
 
 def refinement(name, file, old, new, cases):
-    return Fault(name, f"kernel/picture/{file}", old, new, "refinement", cases)
+    return Fault(name, f"kernel/picture/{file}", old, new, "picture", cases)
 
 
 def adaptive(name, constant, value, planted, cases):
-    return tolerance(name, "picture", constant, value, planted, "refinement", cases)
+    return tolerance(name, "picture", constant, value, planted, "picture", cases)
 
 
 FAULTS = [
     Fault("no samples in boxes", "kernel/shade/strip.hpp", "if (work.boxes)", "if (false)",
-          "sampling", "*PixelBoxes.GetHalf*"),
+          "shade", "*PixelBoxes.GetHalf*"),
     Fault("samples in boxes that weigh as all", "kernel/shade/strip.hpp",
-          "return select(has, two * select(aimed, area, rest), one);", "return one;", "sampling",
+          "return select(has, two * select(aimed, area, rest), one);", "return one;", "shade",
           "*PixelBoxes.Move*"),
     Fault("no box pays", "kernel/shade/pixel_box.hpp", "kLargestBox = .25f;", "kLargestBox = 0;",
-          "refinement", "AimedRays.FindSpecks"),
+          "picture", "AimedRays.FindSpecks"),
     adaptive("no disc", "kDiscInBox", ".7853982f", "0", "AimedRays.FindSpecks"),
     adaptive("one difference too few of the young", "kYoung", "3", "2", "*.EstimateThe*"),
     adaptive("one difference too few of the old", "kOld", "7", "6", "*.EstimateThe*"),

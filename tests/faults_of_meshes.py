@@ -5,8 +5,8 @@ BINARY, TEXT = "frontend/ply/stl_binary.cpp", "frontend/ply/stl_text.cpp"
 READER, COLORS = "frontend/ply/stl_reader.cpp", "frontend/ply/ply_colors.cpp"
 
 
-def of_mesh(name, file, old, new, cases):
-    return Fault(name, file, old, new, "ply_reader", cases)
+def of_mesh(name, file, old, new, cases, test="ply"):
+    return Fault(name, file, old, new, test, cases)
 
 
 FAULTS = [
@@ -42,7 +42,7 @@ FAULTS = [
     of_mesh("polygons without area that are left out", "frontend/scene/scene_builder_mesh.cpp",
             "result == Result::kNoArea && i < indices.size()", "false", "PlyAlone.Triangles*"),
     of_mesh("normals at 0 and -0", "frontend/scene/smooth_normals.cpp", "(c + 0.f)", "(c)",
-            "SmoothNormals.OfVerticesWritten*"),
+            "SmoothNormals.OfVerticesWritten*", "scene"),
     of_mesh("neighbours in the same place", "frontend/scene/point_spacing.cpp",
-            "if (square > 0 &&", "if (", "Points.AreAsLarge*"),
+            "if (square > 0 &&", "if (", "Points.AreAsLarge*", "scene"),
 ]

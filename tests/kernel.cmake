@@ -1,54 +1,36 @@
 # The kernel: every intersection, the grid, every way of walking it, shading, and equal bits of all
 # copies.
-grelha_test(kernel/shapes/sphere property grelha::kernel)
-grelha_test(kernel/shapes/plane property grelha::kernel)
-grelha_test(kernel/shapes/cone property grelha::kernel)
-grelha_test(kernel/shapes/triangle property grelha::kernel)
-target_sources(triangle_test PRIVATE kernel/shapes/triangle_crossing_test.cpp)
-target_sources(triangle_test PRIVATE kernel/shapes/triangle_overlap_test.cpp)
-grelha_test(kernel/grid/grid property grelha::kernel)
-target_sources(grid_test PRIVATE support/same_grids.cpp)
-target_sources(grid_test PRIVATE kernel/grid/grid_choice_test.cpp kernel/grid/mesh_check_test.cpp)
-grelha_test(kernel/grid/clusters property grelha::kernel)
-grelha_test(kernel/grid/building property grelha::frontend grelha::scenes)
-grelha_test(kernel/traverse/walk property grelha::kernel)
-grelha_test(kernel/traverse/frustum property grelha::kernel grelha_lane_functions)
-grelha_test(kernel/base/power property grelha::kernel grelha_lane_functions)
-grelha_test(kernel/base/rounding property grelha::kernel)
-grelha_test(kernel/traverse/leaving property grelha::kernel)
-target_sources(leaving_test PRIVATE kernel/traverse/mirror_rays_test.cpp
-  kernel/traverse/next_hit_test.cpp kernel/traverse/origin_test.cpp)
-grelha_test(kernel/scene/camera unit grelha::kernel)
-grelha_test(kernel/base/thread_pool unit grelha::kernel)
-grelha_test(kernel/base/pages unit grelha::kernel)
-grelha_test(kernel/isa/variants property grelha::kernel)
-grelha_test(kernel/isa/kinds property grelha::kernel)
+# What needs rational numbers is left out without them, and says so.
 find_library(GRELHA_GMPXX gmpxx)
 find_library(GRELHA_GMP gmp)
+set(gmp "")
 if(GRELHA_GMPXX)
-  grelha_test(kernel/traverse/exact property grelha::kernel ${GRELHA_GMPXX} ${GRELHA_GMP})
-  target_sources(exact_test PRIVATE kernel/query/agreement_test.cpp kernel/query/inside_test.cpp
-    kernel/query/winding_test.cpp kernel/traverse/expansion_test.cpp)
+  set(gmp ${GRELHA_GMPXX} ${GRELHA_GMP})
+  set(exact_traverse exact expansion)
+  set(exact_query agreement inside winding)
 else()
   add_test(NAME exact COMMAND ${CMAKE_COMMAND} -E echo
     "SKIPPED: rational numbers need GMP (Debian: libgmp-dev)")
   set_tests_properties(exact PROPERTIES LABELS property SKIP_REGULAR_EXPRESSION "SKIPPED: ")
 endif()
-grelha_test(kernel/query/query unit grelha::kernel)
-target_sources(query_test PRIVATE kernel/query/any_size_test.cpp
-  kernel/query/crossings_test.cpp kernel/query/rays_test.cpp)
-grelha_test(kernel/query/all_hits property grelha::kernel)
-grelha_test(kernel/query/world property grelha::kernel)
-target_sources(world_test PRIVATE kernel/query/meshes_test.cpp support/same_grids.cpp)
-grelha_test(kernel/query/closest_point property grelha::kernel)
-grelha_test(kernel/shade/shade unit grelha::kernel)
-target_sources(shade_test PRIVATE kernel/shade/bounces_test.cpp)
-grelha_test(kernel/shapes/duplicates unit grelha::kernel)
-grelha_test(kernel/shade/path_weight unit grelha::kernel)
-grelha_test(kernel/picture/subdivision image grelha::kernel)
-target_sources(subdivision_test PRIVATE kernel/picture/adaptive_test.cpp)
-grelha_test(kernel/picture/determinism image grelha::frontend grelha::scenes)
-target_sources(determinism_test PRIVATE kernel/picture/fork_test.cpp)
+grelha_tests(kernel/base UNIT pages thread_pool PROPERTY power rounding
+  LIBRARIES grelha::kernel grelha_lane_functions)
+grelha_tests(kernel/scene NAME camera UNIT camera LIBRARIES grelha::kernel)
+grelha_tests(kernel/shapes UNIT duplicates
+  PROPERTY sphere plane cone triangle triangle_crossing triangle_overlap LIBRARIES grelha::kernel)
+grelha_tests(kernel/grid PROPERTY grid grid_choice mesh_check clusters building
+  LIBRARIES grelha::frontend grelha::scenes SOURCES support/same_grids.cpp)
+grelha_tests(kernel/traverse
+  PROPERTY walk frustum leaving mirror_rays next_hit origin ${exact_traverse}
+  LIBRARIES grelha::kernel grelha_lane_functions ${gmp})
+grelha_tests(kernel/query UNIT query any_size crossings rays
+  PROPERTY all_hits world meshes closest_point ${exact_query}
+  LIBRARIES grelha::kernel ${gmp} SOURCES support/same_grids.cpp)
+grelha_tests(kernel/isa PROPERTY variants kinds LIBRARIES grelha::kernel)
+grelha_tests(kernel/shade UNIT shade bounces path_weight
+  PROPERTY sampling pixel_box pixel_curve LIBRARIES grelha::kernel grelha_lane_functions)
+grelha_tests(kernel/picture IMAGE subdivision adaptive determinism fork refinement target_rays
+  error_check block_errors specks LIBRARIES grelha::frontend grelha::scenes)
 
 # The kernel refuses arithmetic that rounds only when it stores, as x87 does.
 add_test(NAME refuses_x87 COMMAND ${CMAKE_CXX_COMPILER} -std=c++20 -fsyntax-only -w -x c++
@@ -67,7 +49,7 @@ set_tests_properties(first_build PROPERTIES LABELS build)
 # What breaks ray tracers, row by row; perf/stability.cpp asks the same rows with millions of rays,
 # and Embree beside.
 add_subdirectory(stability)
-grelha_test(stability/stability property grelha::stability)
+grelha_tests(stability PROPERTY stability LIBRARIES grelha::stability)
 
 # No function of one instruction set's copy can be linked into another. The self test plants three
 # that could.

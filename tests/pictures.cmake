@@ -1,5 +1,3 @@
-grelha_test(scenes/spd_counts image grelha::frontend grelha::scenes)
-
 # Every block of the pages, in order. What is installed links with g++ as the page says it.
 set(to_install "")
 if(GRELHA_INSTALL AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND
@@ -10,15 +8,6 @@ add_test(NAME page_blocks COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/with_python.sh
   ${CMAKE_CURRENT_SOURCE_DIR}/page_blocks.py ${PROJECT_SOURCE_DIR} $<TARGET_FILE:grelha>
   ${CMAKE_CURRENT_BINARY_DIR}/page_blocks ${to_install})
 set_tests_properties(page_blocks PROPERTIES LABELS image SKIP_RETURN_CODE 77)
-grelha_test(kernel/shade/sampling property grelha::kernel grelha_lane_functions)
-target_sources(sampling_test PRIVATE kernel/shade/pixel_box_test.cpp
-  kernel/shade/pixel_curve_test.cpp)
-grelha_test(frontend/input/effects image grelha::frontend)
-grelha_test(kernel/picture/refinement image grelha::frontend grelha::scenes)
-target_sources(refinement_test PRIVATE kernel/picture/target_rays_test.cpp
-  kernel/picture/error_check_test.cpp kernel/picture/block_errors_test.cpp
-  kernel/picture/specks_test.cpp)
-
 # What once failed and is no part of the project.
 add_test(NAME shared_faults COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/with_python.sh
   ${CMAKE_CURRENT_SOURCE_DIR}/shared_faults.py ${PROJECT_SOURCE_DIR}/../shared/faults

@@ -1,4 +1,4 @@
-// What `grelha compare` says and writes. A part of program_test.
+// What `grelha compare` says and writes.
 #include "tests/frontend/cli/program.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Tests the memory that the program uses, estimates, and refuses to use. A part of program_test.
+// Tests the memory that the program uses, estimates, and refuses to use.
 #include "frontend/files/memory_limit.hpp"
 #include "grelha/geometry.hpp"
 #include "tests/frontend/cli/program.hpp"

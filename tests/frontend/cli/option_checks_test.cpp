@@ -1,4 +1,4 @@
-// Options that contradict each other. A part of options_test.
+// Options that contradict each other.
 #include "tests/support/parsing.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Files of other formats are named for what they are. A part of text_test.
+// Files of other formats are named for what they are.
 #include "frontend/files/other_formats.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Tests the text that is printed on a terminal. A part of text_test.
+// Tests the text that is printed on a terminal.
 #include "frontend/files/shown.hpp"
 
 #include <gtest/gtest.h>

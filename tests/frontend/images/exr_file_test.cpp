@@ -1,4 +1,4 @@
-// OpenEXR. A part of image_file_test.
+// OpenEXR.
 #include "frontend/images/exr_file.hpp"
 
 #include "frontend/images/image_file.hpp"

@@ -1,4 +1,4 @@
-// Tests the bytes of a PNG. A part of image_file_test.
+// Tests the bytes of a PNG.
 #include "frontend/images/image_file.hpp"
 #include "frontend/images/tone.hpp"
 #include "tests/support/temporary_folder.hpp"

@@ -1,4 +1,4 @@
-// Pictures without their background. A part of image_file_test.
+// Pictures without their background.
 #include "frontend/images/transparent.hpp"
 
 #include "frontend/images/exr_file.hpp"

@@ -1,7 +1,5 @@
-// Compares pictures of effects with known results, and checks that they have the same bits on all
-// instruction sets.
+// Compares pictures of effects with known results.
 #include <cmath>
-#include <cstring>
 #include <numbers>
 
 #include "frontend/input/effects.hpp"

@@ -1,4 +1,4 @@
-// Checkpoints of pictures that have no parts, by error or by subdivision. A part of parts_test.
+// Checkpoints of pictures that have no parts, by error or by subdivision.
 #include <limits>
 #include <optional>
 

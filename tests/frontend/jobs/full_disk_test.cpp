@@ -1,4 +1,4 @@
-// No room for a picture that is done, nor for its checkpoint. A part of long_work_test.
+// No room for a picture that is done, nor for its checkpoint.
 #include <filesystem>
 
 #include "frontend/files/memory_limit.hpp"

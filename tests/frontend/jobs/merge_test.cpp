@@ -1,4 +1,4 @@
-// Files of parts: joined, told apart, and refused where they are damaged. A part of parts_test.
+// Files of parts: joined, told apart, and refused where they are damaged.
 #include "frontend/files/parse_error.hpp"
 #include "frontend/jobs/merge.hpp"
 #include "grelha/accumulator.hpp"

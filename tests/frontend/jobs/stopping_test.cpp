@@ -1,4 +1,4 @@
-// Signals and time stop the program, and the same command goes on. A part of long_work_test.
+// Signals and time stop the program, and the same command goes on.
 #include "frontend/files/atomic_file.hpp"
 #include "frontend/files/unfinished.hpp"
 #include "frontend/jobs/partial.hpp"

@@ -1,5 +1,5 @@
 // Tests NFF dialects of other programs and of courses: C comments, Windows paths, additional
-// keywords. A part of nff_reader_test.
+// keywords.
 #include "frontend/nff/nff_reader.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,4 @@
-// Tests invalid content of scenes: unknown words, primitives of size zero, numbers out of range. A
-// part of nff_reader_test.
+// Tests invalid content of scenes: unknown words, primitives of size zero, numbers out of range.
 #include "frontend/nff/nff_reader.hpp"
 
 #include <gtest/gtest.h>

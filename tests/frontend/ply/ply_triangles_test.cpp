@@ -1,4 +1,4 @@
-// Rows of three indices. A part of ply_reader_test.
+// Rows of three indices.
 #include <gtest/gtest.h>
 
 #include "frontend/ply/ply_reader.hpp"

@@ -1,5 +1,5 @@
 // Polygons that cross, touch or cover themselves: what they hold by the even-odd rule, told by rays
-// in long double. A part of polygon_test.
+// in long double.
 #include "frontend/scene/polygon.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Tests outlines that are slow to triangulate, and the orientation test that triangulation depends
-// on. A part of polygon_test.
+// on.
 #include "frontend/scene/scene_builder.hpp"
 
 #include <gtest/gtest.h>

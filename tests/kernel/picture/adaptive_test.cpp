@@ -1,8 +1,5 @@
-// Adaptive supersampling with rays: against truths of geometry, and the same bits everywhere. A
-// part of subdivision_test.
+// Adaptive supersampling with rays, against truths of geometry.
 #include <cstring>
-#include <map>
-#include <set>
 
 #include "kernel/picture/point_tracer.hpp"
 #include "tests/support/rays.hpp"

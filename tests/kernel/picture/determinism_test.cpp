@@ -282,7 +282,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes,
                          testing::Values("balls", "mount", "mixture", "parallel"),
                          [](const auto& p) { return std::string(p.param); });
 
-/// How samples are spent, on a picture of all effects.
+/// How samples are spent, on a picture of all effects; refine.samples are of one pixel.
 struct Method {
   const char* name;
   RenderOptions options;
@@ -315,7 +315,7 @@ std::vector<Method> methods() {
   o.subdivision = {};
   o.sampling = {};
   add("ByError", [](RenderOptions& m) { m.refine.error = .05; });
-  add("BySamples", [](RenderOptions& m) { m.refine.samples = 61 * 61 * 24; });
+  add("BySamples", [](RenderOptions& m) { m.refine.samples = 24; });
   return all;
 }
 
@@ -330,9 +330,11 @@ class Methods : public testing::TestWithParam<Method> {
   void set_size(int width, int height) {
     camera_.width = width;
     camera_.height = height;
+    options_.refine.samples *= static_cast<unsigned>(width * height);
   }
   const Scene scene_ = everything();
   Camera camera_;
+  RenderOptions options_ = GetParam().options;
 };
 
 TEST_P(Methods, OnePictureForEveryWayOfTracing) {
@@ -340,14 +342,14 @@ TEST_P(Methods, OnePictureForEveryWayOfTracing) {
   std::vector<Built> worlds;
   worlds.push_back({"no grid", World(scene_, {.grid = false})});
   worlds.push_back({"a dense grid", World(scene_, {.density = 3})});
-  expect_one_picture(worlds, camera_, GetParam().options);
+  expect_one_picture(worlds, camera_, options_);
 }
 
 /// Stopped after every few pieces, gone on with by other threads from a copy.
 TEST_P(Methods, StoppedAnywhereGoesOnToTheSameBits) {
   set_size(157, 61);
   const World world(scene_, {});
-  RenderOptions o = GetParam().options;
+  RenderOptions o = options_;
   RenderStats all, stats;
   SampleMaps wanted, maps;
   const Image whole = render(world, camera_, o, all, &wanted);

@@ -1,4 +1,4 @@
-// Mirrors and glass against closed forms in long double. A part of shade_test.
+// Mirrors and glass against closed forms in long double.
 #include <gtest/gtest.h>
 
 #include <cmath>
