@@ -13,7 +13,7 @@ struct ConeShape {
 
 /// Cylinders, cones with a tip, frusta, needles and flat collars; one in five shows its inside
 /// alone.
-inline ConeShape random_shape(Random& random, double& size) {
+inline ConeShape random_cone(Random& random, double& size) {
   size = random.log_in(1e-12, 1e12);
   const double height = size * random.log_in(.05, 20);
   ConeShape s;
@@ -34,9 +34,9 @@ inline ConeShape random_shape(Random& random, double& size) {
 
 /// The same down to washers 1e-18 times as high as wide: most of these have no height left unless
 /// they lie at the origin.
-inline ConeShape flat_shape(Random& random, double& size) {
+inline ConeShape flat_cone(Random& random, double& size) {
   for (;;) {
-    ConeShape s = random_shape(random, size);
+    ConeShape s = random_cone(random, size);
     const double wide = std::max(std::abs(s.r0), std::abs(s.r1));
     s.apex = at(s.base, wide * random.log_in(1e-18, .05), random.direction());
     size = wide;
@@ -71,7 +71,7 @@ inline ConeCase random_case(std::uint64_t seed, double farthest, Target aim) {
   Random random(seed);
   double size;
   ConeCase k;
-  k.shape = aim == Target::kFlat ? flat_shape(random, size) : random_shape(random, size);
+  k.shape = aim == Target::kFlat ? flat_cone(random, size) : random_cone(random, size);
   if (aim == Target::kNarrowEnd ||
       aim ==
           Target::kAlongTheSide) {  // half with a tip, the others down to nearly one, at either end

@@ -19,7 +19,7 @@ TEST_P(Cone, ReturnsTheScalarBits) {
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     Random random(seed);
     double size;
-    const ConeShape c = seed % 3 == 2 ? flat_shape(random, size) : random_shape(random, size);
+    const ConeShape c = seed % 3 == 2 ? flat_cone(random, size) : random_cone(random, size);
     const Scene scene = one_cone(c.base, c.r0, c.apex, c.r1);
     const World world(scene, {.grid = false});
     const RayList rays =
@@ -217,8 +217,7 @@ TEST(ConeOracle, IsNotMetByWhatLeavesIt) {
   for (std::uint64_t seed = 0; seed < 600000; ++seed) {
     Random random(seed);
     double size;
-    const ConeShape shape =
-        random.chance(.3) ? flat_shape(random, size) : random_shape(random, size);
+    const ConeShape shape = random.chance(.3) ? flat_cone(random, size) : random_cone(random, size);
     if (shape.r0 + shape.r1 <= 0)
       continue;  // no radius, or only the inside
     const oracle::Frustum f{shape.base, shape.apex, shape.r0, shape.r1};
@@ -258,8 +257,7 @@ TEST(ConeOracle, KeepsCrossingsAtTheEndsOfSearches) {
   for (std::uint64_t seed = 0; seed < 300000; ++seed) {
     Random random(seed);
     double size;
-    const ConeShape shape =
-        random.chance(.2) ? flat_shape(random, size) : random_shape(random, size);
+    const ConeShape shape = random.chance(.2) ? flat_cone(random, size) : random_cone(random, size);
     const bool to_apex = random.chance(.5);
     const Float3 from = to_apex ? shape.apex : shape.base;
     const Float3 to = to_apex ? shape.base : shape.apex;
