@@ -4,7 +4,7 @@ find_package(nlohmann_json REQUIRED)
 grelha_tests(frontend/files UNIT text other_formats shown atomic_file
   LIBRARIES grelha::frontend ZLIB::ZLIB)
 grelha_tests(frontend/images UNIT image_file exr_file png_writing transparent compare
-  LIBRARIES grelha::frontend ZLIB::ZLIB OpenMP::OpenMP_CXX)
+  LIBRARIES grelha::frontend ZLIB::ZLIB)
 grelha_tests(frontend/scene UNIT polygon crossed_polygons folded_polygons frame many_crossings
   smooth_normals LIBRARIES grelha::frontend)
 grelha_tests(frontend/nff UNIT nff_reader nff_dialects nff_noise LIBRARIES grelha::frontend)
