@@ -3,7 +3,6 @@
 #include "frontend/cli/option_checks.hpp"
 #include "frontend/cli/options.hpp"
 #include "frontend/files/atomic_file.hpp"
-#include "frontend/files/nearest.hpp"
 #include "frontend/files/text.hpp"
 
 #include <CLI/CLI.hpp>

@@ -2,11 +2,11 @@
 // written. 2: bad usage, or a scene that cannot be one. 3: an error that was not met. 128 and its
 // number: a signal stopped a render that can go on. This is the one file of the frontend that knows
 // the generators.
-#include "frontend/commands/console.hpp"
 #include "frontend/cli/command_line.hpp"
 #include "frontend/cli/compare_images.hpp"
 #include "frontend/cli/render_scene.hpp"
 #include "frontend/commands/batch.hpp"
+#include "frontend/commands/console.hpp"
 #include "frontend/commands/nothing_seen.hpp"
 #include "frontend/commands/outputs.hpp"
 #include "frontend/commands/progress.hpp"
@@ -14,9 +14,8 @@
 #include "frontend/commands/warning_log.hpp"
 #include "frontend/files/atomic_file.hpp"
 #include "frontend/files/memory_limit.hpp"
-#include "frontend/files/nearest.hpp"
 #include "frontend/files/parse_error.hpp"
-#include "frontend/files/shown.hpp"
+#include "frontend/files/text.hpp"
 #include "frontend/files/unfinished.hpp"
 #include "frontend/images/image_file.hpp"
 #include "frontend/jobs/kept.hpp"

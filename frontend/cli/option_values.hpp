@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "frontend/commands/commands.hpp"
-#include "frontend/files/nearest.hpp"
+#include "frontend/files/text.hpp"
 
 namespace grelha::option_values {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "frontend/commands/commands.hpp"
-#include "frontend/files/place.hpp"
+#include "frontend/files/atomic_file.hpp"
 #include "frontend/jobs/ranks.hpp"
 
 namespace grelha {

@@ -3,7 +3,7 @@
 #include <iostream>
 
 #include "frontend/files/parse_error.hpp"
-#include "frontend/files/shown.hpp"
+#include "frontend/files/text.hpp"
 
 namespace grelha {
 

@@ -7,7 +7,6 @@
 
 #include "frontend/files/atomic_file.hpp"
 #include "frontend/files/parse_error.hpp"
-#include "frontend/files/place.hpp"
 #include "frontend/images/image_file.hpp"
 
 namespace grelha {

@@ -3,10 +3,10 @@
 #include "frontend/commands/json.hpp"
 #include "frontend/commands/mesh_report.hpp"
 #include "frontend/commands/needs.hpp"
-#include "frontend/scene/bounds.hpp"
 #include "frontend/files/atomic_file.hpp"
 #include "frontend/files/memory_limit.hpp"
-#include "frontend/files/shown.hpp"
+#include "frontend/files/text.hpp"
+#include "frontend/scene/bounds.hpp"
 
 #include <sys/resource.h>
 

@@ -15,8 +15,8 @@
 #include <span>
 
 #include "frontend/files/load_progress.hpp"
+#include "frontend/files/other_formats.hpp"
 #include "frontend/files/parse_error.hpp"
-#include "frontend/files/plausible.hpp"
 
 namespace grelha {
 namespace {

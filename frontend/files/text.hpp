@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -91,5 +92,25 @@ class Words {
   /// the first "*/" (or the end) behind a position that was searched from
   mutable const char *searched_ = nullptr, *close_ = nullptr;
 };
+
+/// Makes text safe for a terminal that reads UTF-8. File names and words of scenes are untrusted: a
+/// control character in them could move the cursor, set a title or hide text. Each becomes `?`.
+/// Line ends stay.
+std::string printable_text(std::string_view text);
+
+/// The same for text that must stay on one line.
+std::string printable_line(std::string_view text);
+
+/// Letters to add, drop, change or swap with their neighbour to make `b` of `a` (each place edited
+/// once).
+std::size_t edit_distance(std::string_view a, std::string_view b);
+
+/// The word that was probably meant by the one found: the first of the nearest, at most a third of
+/// its letters away, or one that it begins; capitals are as small letters. Empty when there is
+/// none.
+std::string_view nearest(std::string_view word_found, std::span<const std::string_view> words);
+
+/// `; did you mean WORD?`, or nothing.
+std::string suggest(std::string_view found, std::span<const std::string_view> words);
 
 }  // namespace grelha

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "frontend/commands/commands.hpp"
-#include "frontend/files/place.hpp"
+#include "frontend/files/atomic_file.hpp"
 #include "frontend/jobs/checkpoint.hpp"
 #include "frontend/jobs/kept.hpp"
 #include "frontend/jobs/ranks.hpp"

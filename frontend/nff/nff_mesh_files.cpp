@@ -6,7 +6,7 @@
 
 #include "frontend/files/load_file.hpp"
 #include "frontend/files/memory_limit.hpp"
-#include "frontend/files/plausible.hpp"
+#include "frontend/files/other_formats.hpp"
 #include "frontend/ply/mesh_file.hpp"
 
 namespace grelha {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "frontend/files/load_progress.hpp"
-#include "frontend/files/nearest.hpp"
-#include "frontend/files/plausible.hpp"
+#include "frontend/files/other_formats.hpp"
+#include "frontend/files/text.hpp"
 #include "frontend/nff/nff_boxes.hpp"
 #include "frontend/nff/nff_input.hpp"
 #include "frontend/nff/nff_lights.hpp"

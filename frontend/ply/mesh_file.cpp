@@ -1,6 +1,6 @@
 #include "frontend/ply/mesh_file.hpp"
 
-#include "frontend/files/plausible.hpp"
+#include "frontend/files/other_formats.hpp"
 #include "frontend/files/text.hpp"
 #include "frontend/ply/ply_reader.hpp"
 #include "frontend/ply/stl_reader.hpp"

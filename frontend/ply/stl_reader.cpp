@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "frontend/files/load_progress.hpp"
-#include "frontend/files/plausible.hpp"
+#include "frontend/files/other_formats.hpp"
 #include "frontend/ply/stl_binary.hpp"
 #include "frontend/ply/stl_text.hpp"
 

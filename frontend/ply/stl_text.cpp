@@ -4,7 +4,7 @@
 #include <array>
 #include <cstring>
 
-#include "frontend/files/plausible.hpp"
+#include "frontend/files/other_formats.hpp"
 
 namespace grelha {
 namespace {

@@ -1,9 +1,9 @@
 // Tests which existing files each command may overwrite and which it may not.
-#include "frontend/input/read_scene.hpp"
 #include "frontend/commands/first_hits.hpp"
+#include "frontend/files/atomic_file.hpp"
 #include "frontend/files/memory_limit.hpp"
-#include "frontend/files/place.hpp"
 #include "frontend/images/image_file.hpp"
+#include "frontend/input/read_scene.hpp"
 #include "grelha/query.hpp"
 #include "tests/support/running.hpp"
 

@@ -1,7 +1,7 @@
 #include "frontend/cli/command_line.hpp"
 #include "frontend/cli/pages.hpp"
 
-#include "frontend/files/nearest.hpp"
+#include "frontend/files/text.hpp"
 #include "tests/support/parsing.hpp"
 
 #include <gtest/gtest.h>

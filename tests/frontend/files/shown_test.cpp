@@ -1,5 +1,5 @@
 // Tests the text that is printed on a terminal.
-#include "frontend/files/shown.hpp"
+#include "frontend/files/text.hpp"
 
 #include <gtest/gtest.h>
 

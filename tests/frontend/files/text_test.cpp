@@ -1,8 +1,8 @@
-#include "frontend/input/read_scene.hpp"
-#include "frontend/files/memory_limit.hpp"
-#include "frontend/files/plausible.hpp"
 #include "frontend/files/load_file.hpp"
+#include "frontend/files/memory_limit.hpp"
+#include "frontend/files/other_formats.hpp"
 #include "frontend/files/text.hpp"
+#include "frontend/input/read_scene.hpp"
 
 #include <gtest/gtest.h>
 
