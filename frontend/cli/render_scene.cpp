@@ -11,7 +11,7 @@
 
 #include "frontend/commands/console.hpp"
 #include "frontend/commands/cut_light.hpp"
-#include "frontend/commands/first_hits.hpp"
+#include "frontend/commands/layers.hpp"
 #include "frontend/commands/nothing_seen.hpp"
 #include "frontend/commands/outputs.hpp"
 #include "frontend/commands/progress.hpp"
@@ -19,7 +19,6 @@
 #include "frontend/commands/warning_log.hpp"
 #include "frontend/files/atomic_file.hpp"
 #include "frontend/images/image_file.hpp"
-#include "frontend/images/transparent.hpp"
 #include "frontend/jobs/identity.hpp"
 #include "frontend/jobs/long_render.hpp"
 #include "frontend/jobs/partial.hpp"

@@ -29,8 +29,11 @@ std::string_view ending_of(ImageFormat format);
 /// Returns whether the format's writer can hold a picture of that size, with 3 channels or 4.
 bool image_fits(ImageFormat format, int width, int height, int channels = 3);
 
-/// The file's bytes: hdr_file.hpp and exr_file.hpp have the others. .pfm (little endian, bottom row
-/// first) holds linear floats, exactly, and has no place for notes.
+/// Reads the encoding of a PNG from its chunks sRGB and gAMA: https://www.w3.org/TR/png-3/
+Encoding png_encoding(std::string_view png);
+
+/// The file's bytes: hdr_file.hpp has the others. .pfm (little endian, bottom row first) holds
+/// linear floats, exactly, and has no place for notes.
 std::string encode_png(const Image& image,
                        Tone tone,
                        const Notes& notes = {},

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "frontend/images/transparent.hpp"
+#include "frontend/commands/layers.hpp"
 #include "frontend/input/default_view.hpp"
 #include "frontend/input/effects.hpp"
 #include "frontend/input/read_scene.hpp"

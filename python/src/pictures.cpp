@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "frontend/files/atomic_file.hpp"
-#include "frontend/images/exr_file.hpp"
 #include "frontend/images/hdr_file.hpp"
 #include "frontend/images/image_file.hpp"
 #include "frontend/ply/ply_faces.hpp"

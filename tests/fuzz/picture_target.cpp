@@ -4,9 +4,8 @@
 #include <cstring>
 
 #include "frontend/files/parse_error.hpp"
-#include "frontend/images/exr_file.hpp"
+#include "frontend/images/hdr_file.hpp"
 #include "frontend/images/image_file.hpp"
-#include "frontend/images/png_chunks.hpp"
 #include "tests/fuzz/target.hpp"
 
 namespace {

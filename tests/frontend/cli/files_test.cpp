@@ -1,5 +1,5 @@
 // Tests which existing files each command may overwrite and which it may not.
-#include "frontend/commands/first_hits.hpp"
+#include "frontend/commands/layers.hpp"
 #include "frontend/files/atomic_file.hpp"
 #include "frontend/files/memory_limit.hpp"
 #include "frontend/images/image_file.hpp"

@@ -1,5 +1,5 @@
 // OpenEXR.
-#include "frontend/images/exr_file.hpp"
+#include "frontend/images/hdr_file.hpp"
 
 #include "frontend/images/image_file.hpp"
 #include "grelha/rays.hpp"

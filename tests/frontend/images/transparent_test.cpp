@@ -1,7 +1,7 @@
 // Pictures without their background.
-#include "frontend/images/transparent.hpp"
+#include "frontend/commands/layers.hpp"
 
-#include "frontend/images/exr_file.hpp"
+#include "frontend/images/hdr_file.hpp"
 #include "frontend/images/image_file.hpp"
 #include "tests/support/file_error.hpp"
 #include "tests/support/temporary_folder.hpp"
