@@ -41,8 +41,8 @@ FAULTS = [
             "header.elements.end())", "if (false)", "PlyColors.OfVerticesBefore*"),
     of_mesh("polygons without area that are left out", "frontend/scene/scene_builder_mesh.cpp",
             "result == Result::kNoArea && i < indices.size()", "false", "PlyAlone.Triangles*"),
-    of_mesh("normals at 0 and -0", "frontend/scene/smooth_normals.cpp", "(c + 0.f)", "(c)",
+    of_mesh("normals at 0 and -0", "frontend/scene/mesh.cpp", "(c + 0.f)", "(c)",
             "SmoothNormals.OfVerticesWritten*", "scene"),
-    of_mesh("neighbours in the same place", "frontend/scene/point_spacing.cpp",
+    of_mesh("neighbours in the same place", "frontend/scene/mesh.cpp",
             "if (square > 0 &&", "if (", "Points.AreAsLarge*", "scene"),
 ]

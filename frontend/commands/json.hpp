@@ -5,8 +5,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "frontend/scene/bounds.hpp"
-#include "frontend/scene/frame.hpp"
 #include "frontend/scene/scene_file.hpp"
 #include "grelha/render.hpp"
 

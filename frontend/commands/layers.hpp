@@ -3,7 +3,7 @@
 
 #include "frontend/commands/commands.hpp"
 #include "frontend/images/image_style.hpp"
-#include "frontend/scene/frame.hpp"
+#include "frontend/scene/scene_file.hpp"
 #include "grelha/render.hpp"
 
 namespace grelha {

@@ -6,7 +6,7 @@
 #include "frontend/files/atomic_file.hpp"
 #include "frontend/files/memory_limit.hpp"
 #include "frontend/files/text.hpp"
-#include "frontend/scene/bounds.hpp"
+#include "frontend/scene/scene_file.hpp"
 
 #include <sys/resource.h>
 

@@ -6,14 +6,14 @@
 #include <stdexcept>
 #include <utility>
 
+#include "frontend/files/load_file.hpp"
 #include "frontend/files/load_progress.hpp"
 #include "frontend/files/memory_limit.hpp"
-#include "frontend/files/load_file.hpp"
 #include "frontend/input/default_view.hpp"
 #include "frontend/nff/nff_reader.hpp"
 #include "frontend/ply/mesh_file.hpp"
-#include "frontend/scene/choose_frame.hpp"
 #include "frontend/scene/scene_builder.hpp"
+#include "frontend/scene/scene_file.hpp"
 #include "frontend/scene/warnings.hpp"
 
 namespace grelha {

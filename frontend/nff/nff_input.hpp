@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "frontend/files/text.hpp"
-#include "frontend/scene/frame.hpp"
+#include "frontend/scene/scene_file.hpp"
 #include "frontend/scene/warnings.hpp"
 #include "grelha/geometry.hpp"
 

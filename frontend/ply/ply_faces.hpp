@@ -5,8 +5,8 @@
 
 #include "frontend/ply/ply_colors.hpp"
 #include "frontend/ply/ply_header.hpp"
-#include "frontend/scene/frame.hpp"
 #include "frontend/scene/mesh.hpp"
+#include "frontend/scene/scene_file.hpp"
 
 namespace grelha {
 

@@ -7,7 +7,6 @@
 #include <string_view>
 
 #include "frontend/files/load_progress.hpp"
-#include "frontend/scene/frame.hpp"
 #include "frontend/scene/mesh.hpp"
 #include "frontend/scene/scene_file.hpp"
 

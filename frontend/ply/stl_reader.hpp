@@ -3,7 +3,6 @@
 #include <string>
 #include <string_view>
 
-#include "frontend/scene/frame.hpp"
 #include "frontend/scene/mesh.hpp"
 #include "frontend/scene/scene_file.hpp"
 

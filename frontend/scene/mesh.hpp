@@ -32,4 +32,20 @@ struct Mesh {
   }
 };
 
+/// Gives triangles from `first` on normals at their corners, in arrays where no vertex has one yet.
+/// A corner's is the mean of the normals of those triangles at its place that are turned by at
+/// most some degrees from its own, so sharper edges stay. Vertices at one place count as one; those
+/// whose corners differ are doubled.
+///
+/// Source    Max, "Weights for Computing Vertex Normals from Facet Normals", JGT 4(2), 1999: exact
+///           where the corners lie on a sphere.
+void smooth_normals(Triangles& triangles, std::uint32_t first, double most_deg);
+
+/// Returns a radius by which balls about points of a surface leave few gaps: a share of the median
+/// distance to the third neighbour. A few points far out do not change it. Points that are not
+/// finite do not count; 1 where there are no two places.
+float radius_for(const std::vector<float>& x,
+                 const std::vector<float>& y,
+                 const std::vector<float>& z);
+
 }  // namespace grelha

@@ -5,8 +5,7 @@
 #include <vector>
 
 #include "frontend/scene/cutting_sweep.hpp"
-#include "frontend/scene/even_odd.hpp"
-#include "frontend/scene/exact_turn.hpp"
+#include "frontend/scene/sweep_line.hpp"
 
 namespace grelha {
 

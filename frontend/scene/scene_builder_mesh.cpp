@@ -4,9 +4,8 @@
 #include <map>
 #include <utility>
 
-#include "frontend/scene/point_spacing.hpp"
+#include "frontend/scene/mesh.hpp"
 #include "frontend/scene/scene_builder.hpp"
-#include "frontend/scene/smooth_normals.hpp"
 
 namespace grelha {
 

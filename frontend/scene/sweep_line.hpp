@@ -1,15 +1,46 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <iterator>
 #include <memory_resource>
+#include <optional>
 #include <set>
 #include <vector>
 
-#include "frontend/scene/exact_turn.hpp"
-
 namespace grelha {
+
+struct Point2 {
+  double x = 0, y = 0;
+  bool operator==(const Point2&) const = default;
+};
+
+/// The order in which a line sweeps over the plane: by x and, where x is equal, by y.
+inline bool swept_before(const Point2& a, const Point2& b) {
+  return a.x < b.x || (a.x == b.x && a.y < b.y);
+}
+
+/// Twice the signed area of a, b, c; positive when they turn left. Exact in sign for float
+/// coordinates of like size.
+inline double turn(const Point2& a, const Point2& b, const Point2& c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+/// The sign of the same by the sum of its six products, without rounding.
+int exactly_summed_turn(const Point2& a, const Point2& b, const Point2& c);
+
+/// The sign of the same, exact for all doubles whose products neither over- nor underflow: 1, 0 or
+/// -1. Adds the products without rounding if rounding could change the sign (Shewchuk 1997).
+inline int exact_turn(const Point2& a, const Point2& b, const Point2& c) {
+  constexpr double kRounding = 3.3306690738754716e-16;  // (3 + 16u) u of the two products' sizes
+  const double left = (b.x - a.x) * (c.y - a.y), right = (b.y - a.y) * (c.x - a.x);
+  const double difference = left - right, bound = kRounding * (std::abs(left) + std::abs(right));
+  if (difference > bound)
+    return 1;
+  return difference < -bound ? -1 : exactly_summed_turn(a, b, c);
+}
 
 /// A piece of an outline's side between two points, the left one swept first.
 struct OutlineEdge {
@@ -148,5 +179,21 @@ class SweepEvents {
   List first_ending_, first_start_;  ///< [points]
   List next_ending_, next_start_;    ///< [edges]
 };
+
+/// The inside of an arrangement of edges by the even-odd rule: the area above an odd number of
+/// edges.
+struct EvenOddFill {
+  /// Triangles over the points, each turning left. They share corners and sides without gaps, and
+  /// no point lies on a side.
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  /// Some point has a winding number other than 0 and 1, so other rules fill another area.
+  bool is_crossed = false;
+};
+
+/// A sweep that cuts off triangles behind it (Hertel and Mehlhorn 1983). Returns nothing where
+/// edges meet besides their ends, which its tests find for certain (Shamos and Hoey 1976). Points
+/// come as they are swept, no two at one position; no two edges are between the same points.
+std::optional<EvenOddFill> fill_even_odd(const std::vector<Point2>& points,
+                                         const std::vector<OutlineEdge>& edges);
 
 }  // namespace grelha

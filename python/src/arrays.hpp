@@ -11,7 +11,7 @@
 
 #include <pybind11/numpy.h>
 
-#include "frontend/scene/frame.hpp"
+#include "frontend/scene/scene_file.hpp"
 #include "grelha/coordinates.hpp"
 
 namespace grelha::python {

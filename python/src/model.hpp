@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "frontend/scene/frame.hpp"
+#include "frontend/scene/scene_file.hpp"
 #include "grelha/owning_world.hpp"
 #include "src/arrays.hpp"
 

@@ -1,6 +1,6 @@
 #include "frontend/commands/needs.hpp"
-#include "frontend/scene/bounds.hpp"
 #include "frontend/commands/report.hpp"
+#include "frontend/scene/scene_file.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

@@ -1,6 +1,6 @@
 // Polygons that are folded in space: the surface has their outline, or a word is said. A part of
 // polygon_test.
-#include "frontend/scene/polygon_plane.hpp"
+#include "frontend/scene/polygon.hpp"
 #include "frontend/scene/scene_builder.hpp"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // Scenes whose coordinates floats cannot hold: read in a frame of their own, each coordinate is
 // what the file says to a float's last place in that frame, and pictures are those of the same
 // scene at the origin.
-#include "frontend/scene/frame.hpp"
+#include "frontend/scene/scene_file.hpp"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <random>
 
-#include "frontend/scene/exact_turn.hpp"
+#include "frontend/scene/sweep_line.hpp"
 
 namespace grelha {
 namespace {

@@ -4,8 +4,7 @@
 
 #include "frontend/input/read_scene.hpp"
 #include "frontend/ply/ply_colors.hpp"
-#include "frontend/scene/point_spacing.hpp"
-#include "frontend/scene/smooth_normals.hpp"
+#include "frontend/scene/mesh.hpp"
 #include "grelha/query.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/reading.hpp"
