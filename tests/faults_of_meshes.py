@@ -1,8 +1,7 @@
 """Faults of what is read of meshes: STL as programs write it, colours, points, normals."""
 from fault import Fault
 
-BINARY, TEXT = "frontend/ply/stl_binary.cpp", "frontend/ply/stl_text.cpp"
-READER, COLORS = "frontend/ply/stl_reader.cpp", "frontend/ply/ply_colors.cpp"
+STL, COLORS = "frontend/ply/stl_reader.cpp", "frontend/ply/ply_faces.cpp"
 
 
 def of_mesh(name, file, old, new, cases, test="ply"):
@@ -10,29 +9,29 @@ def of_mesh(name, file, old, new, cases, test="ply"):
 
 
 FAULTS = [
-    of_mesh("bytes of one order", BINARY, "return plain(reversed(count), true);",
+    of_mesh("bytes of one order", STL, "return plain(reversed(count), true);",
             "return plain(reversed(count));", "StlDialects.OfBinary"),
-    of_mesh("attributes that are no lengths", BINARY, "if (lengths.end == bytes.size() &&",
+    of_mesh("attributes that are no lengths", STL, "if (lengths.end == bytes.size() &&",
             "if (false && lengths.end == bytes.size() &&", "StlDialects.OfBinary"),
-    of_mesh("lengths in files that end exactly", BINARY,
+    of_mesh("lengths in files that end exactly", STL,
             "if (all && bytes.size() - lengths.end", "if (false && bytes.size() - lengths.end",
             "StlDialects.OfBinary"),
-    of_mesh("triangles of any bytes", BINARY, "v == 0 || (std::abs(v) >= kLeast",
+    of_mesh("triangles of any bytes", STL, "v == 0 || (std::abs(v) >= kLeast",
             "true || (std::abs(v) >= kLeast", "StlDialects.OfBinary"),
-    of_mesh("text without control characters", READER,
+    of_mesh("text without control characters", STL,
             "is_control) || has_stl_vertex(bytes);", "is_control);", "StlDialects.OfText"),
-    of_mesh("loops of no vertices", TEXT, "if (end < loop_ + 3)",
+    of_mesh("loops of no vertices", STL, "if (end < loop_ + 3)",
             "if (end < loop_ + 3 && end != loop_)", "Stl.WhatIsBroken*"),
-    of_mesh("one line that is a name", TEXT,
+    of_mesh("one line that is a name", STL,
             "keyword_of(word) == Keyword::kFacet && content_begins()", "false",
             "Stl.LoopsAndSolids"),
-    of_mesh("loops that come back", TEXT, "if (end > loop_ + 3 && is_first",
+    of_mesh("loops that come back", STL, "if (end > loop_ + 3 && is_first",
             "if (false && is_first", "Stl.LoopsAndSolids"),
-    of_mesh("a second solid without its end", TEXT, "(ended_ && keyword == Keyword::kNone)",
+    of_mesh("a second solid without its end", STL, "(ended_ && keyword == Keyword::kNone)",
             "ended_", "Stl.WhatIsOdd*"),
-    of_mesh("words behind the end that are warned of", TEXT,
+    of_mesh("words behind the end that are warned of", STL,
             "if (skipped_.empty() && !ended_)", "if (skipped_.empty())", "Stl.WhatIsOdd*"),
-    of_mesh("corners at 0 and -0", READER, "c == 0 ? 0.f : c", "c", "Stl.FarAndNearZero"),
+    of_mesh("corners at 0 and -0", STL, "c == 0 ? 0.f : c", "c", "Stl.FarAndNearZero"),
     of_mesh("colours of faces first", COLORS, '{"vertex", "face"}', '{"face", "vertex"}',
             "PlyColors.OfVerticesBefore*"),
     of_mesh("bytes with a sign", COLORS, "c += 256;", "c += 0;", "PlyColors.AreReadByTheirRange"),

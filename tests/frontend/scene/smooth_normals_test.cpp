@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "frontend/input/read_scene.hpp"
-#include "frontend/ply/ply_colors.hpp"
+#include "frontend/ply/ply_faces.hpp"
 #include "frontend/scene/mesh.hpp"
 #include "grelha/query.hpp"
 #include "tests/support/random.hpp"

@@ -1,4 +1,4 @@
-#include "frontend/ply/ply_colors.hpp"
+#include "frontend/ply/ply_faces.hpp"
 
 #include <algorithm>
 #include <cmath>
