@@ -9,7 +9,7 @@
 #include "frontend/files/load_file.hpp"
 #include "frontend/files/load_progress.hpp"
 #include "frontend/files/memory_limit.hpp"
-#include "frontend/input/default_view.hpp"
+#include "frontend/input/view.hpp"
 #include "frontend/nff/nff_reader.hpp"
 #include "frontend/ply/mesh_file.hpp"
 #include "frontend/scene/scene_builder.hpp"

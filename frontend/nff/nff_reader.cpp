@@ -2,23 +2,63 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "frontend/files/load_progress.hpp"
 #include "frontend/files/other_formats.hpp"
 #include "frontend/files/text.hpp"
-#include "frontend/nff/nff_boxes.hpp"
 #include "frontend/nff/nff_input.hpp"
-#include "frontend/nff/nff_lights.hpp"
-#include "frontend/nff/nff_material.hpp"
 #include "frontend/nff/nff_mesh_files.hpp"
 #include "frontend/nff/nff_plain.hpp"
 #include "frontend/nff/nff_view.hpp"
 #include "frontend/scene/scene_builder.hpp"
+#include "frontend/scene/scene_file.hpp"
 #include "grelha/render.hpp"
 
 namespace grelha {
 namespace {
+
+/// Determines the order of the six numbers of every `aabb` in a file. Two orders are in use, and
+/// only the numbers tell them apart. The numbers of one box often allow both, so this reads all
+/// boxes of the file.
+///
+/// Pairs have every minimum before its maximum; corners ascend, or descend, on every axis. Pairs
+/// when all boxes are in pairs and some cannot be corners; corners otherwise, which any six numbers
+/// can be. `words` stands behind the first `aabb` and is left there.
+BoxOrder aabb_order(Words words);
+
+using Six = std::array<float, 6>;
+
+/// Returns false if reading the box gives an error or drops it.
+bool read_six(Words& words, Six& numbers) {
+  const auto reads = [&](float& number) { return to_number(words.next(), number); };
+  const auto is_finite = [](float number) { return std::isfinite(number); };
+  return std::ranges::all_of(numbers, reads) && std::ranges::all_of(numbers, is_finite);
+}
+
+bool are_pairs(const Six& n) {
+  return n[0] <= n[1] && n[2] <= n[3] && n[4] <= n[5];
+}
+
+bool are_vertices(const Six& n) {
+  const bool ascend = n[0] <= n[3] && n[1] <= n[4] && n[2] <= n[5];
+  const bool descend = n[0] >= n[3] && n[1] >= n[4] && n[2] >= n[5];
+  return ascend || descend;
+}
+
+BoxOrder aabb_order(Words words) {
+  bool all_corners = true;
+  Six numbers;
+  for (std::string_view word = "aabb"; !word.empty(); word = words.next()) {
+    if (word != "aabb" || !read_six(words, numbers))
+      continue;
+    if (!are_pairs(numbers))
+      return BoxOrder::kVertices;
+    all_corners = all_corners && are_vertices(numbers);
+  }
+  return all_corners ? BoxOrder::kVertices : BoxOrder::kPairs;
+}
 
 class NffReader {
  public:

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "frontend/commands/layers.hpp"
-#include "frontend/input/default_view.hpp"
 #include "frontend/input/effects.hpp"
 #include "frontend/input/read_scene.hpp"
+#include "frontend/input/view.hpp"
 #include "frontend/scene/mesh.hpp"
 #include "frontend/scene/scene_builder.hpp"
 #include "grelha/render.hpp"

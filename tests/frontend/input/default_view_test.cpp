@@ -1,5 +1,5 @@
 // Tests the default view, lights and samples of a mesh file without a scene.
-#include "frontend/input/default_view.hpp"
+#include "frontend/input/view.hpp"
 
 #include <algorithm>
 #include <array>
