@@ -18,7 +18,7 @@
 #include "frontend/files/text.hpp"
 #include "frontend/files/unfinished.hpp"
 #include "frontend/images/image_file.hpp"
-#include "frontend/jobs/kept.hpp"
+#include "frontend/jobs/checkpoint.hpp"
 #include "frontend/jobs/merge.hpp"
 #include "frontend/jobs/preparation.hpp"
 #include "frontend/jobs/ranks.hpp"

@@ -7,7 +7,7 @@
 #include "frontend/cli/option_values.hpp"
 #include "frontend/files/atomic_file.hpp"
 #include "frontend/images/image_file.hpp"
-#include "frontend/jobs/partial.hpp"
+#include "frontend/jobs/checkpoint.hpp"
 
 namespace grelha {
 namespace {

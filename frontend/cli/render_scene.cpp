@@ -19,9 +19,9 @@
 #include "frontend/commands/warning_log.hpp"
 #include "frontend/files/atomic_file.hpp"
 #include "frontend/images/image_file.hpp"
+#include "frontend/jobs/checkpoint.hpp"
 #include "frontend/jobs/identity.hpp"
 #include "frontend/jobs/long_render.hpp"
-#include "frontend/jobs/partial.hpp"
 #include "frontend/jobs/preparation.hpp"
 #include "frontend/jobs/stop_signals.hpp"
 #include "frontend/scene/scene_file.hpp"
@@ -111,7 +111,7 @@ class SceneRender {
 
   int run() {
     const Stopwatch load;
-    if (!ranks_.together([this] { read(); }))
+    if (!ranks_.collective([this] { read(); }))
       return kFileFailed;
     prepare();
     report_.seconds.load = load.seconds();

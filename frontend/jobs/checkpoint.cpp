@@ -1,16 +1,139 @@
 #include "frontend/jobs/checkpoint.hpp"
 
+#include <array>
+#include <bit>
 #include <charconv>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
 #include <ostream>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
 
 #include "frontend/files/atomic_file.hpp"
-#include "frontend/files/little_endian.hpp"
-#include "frontend/files/parse_error.hpp"
+#include "frontend/files/digest.hpp"
 #include "frontend/files/load_file.hpp"
+#include "frontend/files/parse_error.hpp"
 #include "frontend/files/text.hpp"
+#include "frontend/images/image_file.hpp"
 
 namespace grelha {
 namespace {
+
+// Numbers in little-endian order, written and read by the same words: f(Sink) and f(Source) of one
+// template are two sides of a format.
+
+/// Writes and digests alike.
+class Sink {
+ public:
+  explicit Sink(std::ostream& out) : out_(out) {}
+
+  void text(std::string_view text) { put(text.data(), text.size()); }
+  template <class... T>
+  void values(const T&... v) {
+    (one(v), ...);
+  }
+  template <class T>
+  void list(const std::vector<T>& values, std::size_t) {
+    if constexpr (std::endian::native == std::endian::little || sizeof(T) == 1)
+      put(values.data(), values.size() * sizeof(T));
+    else
+      for (const T& v : values)
+        one(v);
+  }
+  /// How many there are; whoever calls this writes them.
+  template <class T>
+  void size(const std::vector<T>& values, std::size_t) {
+    one(std::uint64_t(values.size()));
+  }
+  /// The lower half of the digest of all before.
+  void finish() {
+    flush();
+    const std::uint64_t checksum = swapped_if_big(digest_.low64());
+    out_.write(reinterpret_cast<const char*>(&checksum), sizeof checksum);
+  }
+
+ private:
+  template <class T>
+  void one(T value) {
+    const T little = swapped_if_big(value);
+    put(&little, sizeof little);
+  }
+  void put(const void* data, std::size_t size) {
+    constexpr std::size_t kLarge = 65536;
+    buffer_.append(static_cast<const char*>(data), size < kLarge ? size : 0);
+    if (size >= kLarge || buffer_.size() >= kLarge)
+      flush();
+    if (size >= kLarge)
+      pass(data, size);
+  }
+  void flush() {
+    pass(buffer_.data(), buffer_.size());
+    buffer_.clear();
+  }
+  void pass(const void* data, std::size_t size) {
+    digest_.bytes(data, size);
+    out_.write(static_cast<const char*>(data), std::streamsize(size));
+  }
+
+  std::ostream& out_;
+  Digest digest_;
+  std::string buffer_;
+};
+
+/// Thrown where a file is not one of ours.
+struct NotOurs {};
+
+/// Throws NotOurs where the bytes end early, before anything is allocated for what is not there.
+class Source {
+ public:
+  explicit Source(std::string_view bytes) : left_(bytes) {}
+
+  template <class... T>
+  void values(T&... v) {
+    (one(v), ...);
+  }
+  template <class T>
+  void list(std::vector<T>& values, std::size_t count) {
+    require_bytes(count, sizeof(T));
+    values.resize(count);
+    if (count > 0)
+      std::memcpy(values.data(), left_.data(), count * sizeof(T));
+    left_.remove_prefix(count * sizeof(T));
+    for (T& v : values)
+      v = swapped_if_big(v);
+  }
+  /// Makes `values` as long as was written; each has `bytes` at least.
+  template <class T>
+  void size(std::vector<T>& values, std::size_t bytes) {
+    std::uint64_t count = 0;
+    one(count);
+    require_bytes(count, bytes);
+    values.resize(count);
+  }
+  /// There must be nothing left.
+  void finish() const {
+    if (!left_.empty())
+      throw NotOurs();
+  }
+
+ private:
+  template <class T>
+  void one(T& value) {
+    require_bytes(1, sizeof value);
+    std::memcpy(&value, left_.data(), sizeof value);
+    value = swapped_if_big(value);
+    left_.remove_prefix(sizeof value);
+  }
+  void require_bytes(std::uint64_t count, std::size_t bytes) const {
+    if (count > left_.size() / bytes)
+      throw NotOurs();
+  }
+
+  std::string_view left_;
+};
 
 constexpr std::string_view kMagic = "grelha partial 1\n";
 constexpr std::size_t kChecksum = 8;
@@ -158,6 +281,107 @@ Checkpoint read_checkpoint(const std::string& path) {
   } catch (const ParseError&) {  // load_file() reads for scenes as well
     throw FileError(path, "damaged: its gzip data are broken");
   }
+}
+
+namespace {
+
+Partial part_of(const std::string& path, Checkpoint&& c) {
+  Accumulator* const sums = c.picture.sums();
+  if (!sums)
+    throw FileError(
+        path,
+        "the checkpoint of a picture by --error, --time or --aa adaptive, which has no parts");
+  return {std::move(c.identity), std::move(*sums)};
+}
+
+std::string range_text(const Range& range) {
+  return std::to_string(range.begin) + ':' + std::to_string(range.end);
+}
+
+}  // namespace
+
+std::string part_text(const Part& part) {
+  return "rows " + range_text(part.rows) + ", samples " + range_text(part.samples);
+}
+
+bool is_partial_name(std::string_view path) {
+  return path.ends_with(".grelha");
+}
+
+Partial parse_partial(const std::string& path, std::string_view bytes) {
+  return part_of(path, parse_checkpoint(path, bytes));
+}
+
+Partial read_partial(const std::string& path) {
+  return part_of(path, read_checkpoint(path));
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kMaxSavedNames = 10;
+
+/// The picture's name, or the one it would have in this folder.
+std::string picture_name(const RenderCommand& command) {
+  if (command.image != kStdout && !is_special_file(command.image))
+    return command.image;
+  return default_image(command.scene, format_of(command.image, command.format));
+}
+
+bool path_exists(const fs::path& path) {
+  std::error_code ignored;
+  return fs::exists(fs::symlink_status(path, ignored));
+}
+
+constexpr std::string_view kFreshFolder = "grelha-XXXXXX";  // X: any letter or digit
+
+}  // namespace
+
+void remove_kept(const std::string& work) {
+  std::error_code none;
+  fs::remove(work, none);
+  const fs::path folder = fs::absolute(work, none).parent_path();
+  const std::string name = folder.filename().string();
+  if (name.size() == kFreshFolder.size() && name.starts_with(kFreshFolder.substr(0, 7)))
+    fs::remove(folder, none);  // where it is empty
+}
+
+SavedNames saved_names(const RenderCommand& command,
+                       const std::function<bool(const std::string&)>& fits) {
+  const fs::path name = picture_name(command);
+  const auto format = format_of(name.string(), command.format);
+  SavedNames names;
+  for (int i = 0; i < kMaxSavedNames; ++i) {
+    const std::string stem = (name.parent_path() / name.stem()).string() + ".partial" +
+                             (i == 0 ? "" : std::to_string(i));
+    names.picture = format ? stem + '.' + std::string(ending_of(*format)) : "";
+    names.work = stem + ".grelha";
+    if (!path_exists(names.work) || fits(names.work))
+      return names;
+  }
+  return {};
+}
+
+std::string write_fallback(const std::string& work,
+                           const std::function<void(const std::string&)>& write) {
+  std::error_code none;
+  const fs::path own = fs::absolute(work, none).parent_path(), name = fs::path(work).filename();
+  // a new folder, into which no other user can have put a file
+  std::string fresh = (fs::temp_directory_path(none) / kFreshFolder).string();
+  const bool is_fresh = mkdtemp(fresh.data()) != nullptr;
+  for (const fs::path& folder : {fs::path(is_fresh ? fresh : ""), fs::current_path(none)}) {
+    const fs::path target = folder / name;
+    if (folder.empty() || path_exists(target) || fs::equivalent(folder, own, none))
+      continue;
+    try {
+      write(target.string());
+      return target.string();
+    } catch (const FileError&) {  // there is no room either
+      fs::remove(fresh, none);    // where it is empty
+    }
+  }
+  return "";
 }
 
 }  // namespace grelha

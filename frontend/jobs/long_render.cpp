@@ -11,7 +11,7 @@
 #include "frontend/files/atomic_file.hpp"
 #include "frontend/files/parse_error.hpp"
 #include "frontend/images/image_file.hpp"
-#include "frontend/jobs/partial.hpp"
+#include "frontend/jobs/checkpoint.hpp"
 #include "frontend/jobs/stop_signals.hpp"
 
 namespace grelha {

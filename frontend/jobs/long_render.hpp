@@ -8,7 +8,6 @@
 #include "frontend/commands/commands.hpp"
 #include "frontend/files/atomic_file.hpp"
 #include "frontend/jobs/checkpoint.hpp"
-#include "frontend/jobs/kept.hpp"
 #include "frontend/jobs/ranks.hpp"
 
 namespace grelha {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "frontend/jobs/partial.hpp"
+#include "frontend/jobs/checkpoint.hpp"
 
 namespace grelha {
 

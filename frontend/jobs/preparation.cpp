@@ -5,7 +5,7 @@
 #include "frontend/files/memory_limit.hpp"
 #include "frontend/files/parse_error.hpp"
 #include "frontend/input/read_scene.hpp"
-#include "frontend/jobs/partial.hpp"
+#include "frontend/jobs/checkpoint.hpp"
 #include "frontend/jobs/stop_signals.hpp"
 
 #include <algorithm>

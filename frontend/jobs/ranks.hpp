@@ -27,7 +27,7 @@ class Ranks {
   /// Runs work that each rank does by itself, and returns true if all ranks succeeded. Ranks that
   /// failed throw their error. If the first rank is among them it alone throws, and all continue
   /// together.
-  bool together(const std::function<void()>& work);
+  bool collective(const std::function<void()>& work);
 
   /// False from work in which all ranks succeeded to the end of advance(): a failure there leaves
   /// the others waiting.

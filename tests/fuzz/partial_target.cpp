@@ -7,8 +7,8 @@
 #include "frontend/commands/commands.hpp"
 #include "frontend/files/digest.hpp"
 #include "frontend/files/parse_error.hpp"
+#include "frontend/jobs/checkpoint.hpp"
 #include "frontend/jobs/merge.hpp"
-#include "frontend/jobs/partial.hpp"
 #include "kernel/picture/picture.hpp"
 #include "tests/fuzz/target.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "frontend/jobs/partial.hpp"
+#include "frontend/jobs/checkpoint.hpp"
 
 namespace grelha {
 

@@ -2,7 +2,7 @@
 #include <filesystem>
 
 #include "frontend/files/memory_limit.hpp"
-#include "frontend/jobs/partial.hpp"
+#include "frontend/jobs/checkpoint.hpp"
 #include "tests/frontend/jobs/long_work.hpp"
 
 namespace grelha {

@@ -1,6 +1,6 @@
 // Checkpoints of other work, full disks and folders that cannot be written. A part of
 // long_work_test.
-#include "frontend/jobs/partial.hpp"
+#include "frontend/jobs/checkpoint.hpp"
 #include "tests/frontend/jobs/long_work.hpp"
 
 #include <unistd.h>

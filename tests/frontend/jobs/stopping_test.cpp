@@ -1,7 +1,7 @@
 // Signals and time stop the program, and the same command goes on.
 #include "frontend/files/atomic_file.hpp"
 #include "frontend/files/unfinished.hpp"
-#include "frontend/jobs/partial.hpp"
+#include "frontend/jobs/checkpoint.hpp"
 #include "frontend/jobs/stop_signals.hpp"
 #include "tests/frontend/jobs/long_work.hpp"
 
