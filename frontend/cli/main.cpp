@@ -11,7 +11,6 @@
 #include "frontend/commands/outputs.hpp"
 #include "frontend/commands/progress.hpp"
 #include "frontend/commands/report.hpp"
-#include "frontend/commands/warning_log.hpp"
 #include "frontend/files/atomic_file.hpp"
 #include "frontend/files/memory_limit.hpp"
 #include "frontend/files/parse_error.hpp"

@@ -10,13 +10,11 @@
 #include <vector>
 
 #include "frontend/commands/console.hpp"
-#include "frontend/commands/cut_light.hpp"
 #include "frontend/commands/layers.hpp"
 #include "frontend/commands/nothing_seen.hpp"
 #include "frontend/commands/outputs.hpp"
 #include "frontend/commands/progress.hpp"
 #include "frontend/commands/report.hpp"
-#include "frontend/commands/warning_log.hpp"
 #include "frontend/files/atomic_file.hpp"
 #include "frontend/images/image_file.hpp"
 #include "frontend/jobs/checkpoint.hpp"

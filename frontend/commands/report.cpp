@@ -1,21 +1,94 @@
 #include "frontend/commands/report.hpp"
 
+#include <algorithm>
+#include <cstdarg>
+#include <cstdio>
+#include <cstdlib>
+#include <sstream>
+#include <string>
+
 #include "frontend/commands/json.hpp"
-#include "frontend/commands/mesh_report.hpp"
-#include "frontend/commands/needs.hpp"
 #include "frontend/files/atomic_file.hpp"
 #include "frontend/files/memory_limit.hpp"
 #include "frontend/files/text.hpp"
 #include "frontend/scene/scene_file.hpp"
+#include "grelha/mesh_check.hpp"
+#include "grelha/scene_spans.hpp"
 
 #include <sys/resource.h>
 
-#include <cstdarg>
-#include <cstdio>
-#include <cstdlib>
-
 namespace grelha {
 namespace {
+
+// ---- whether a mesh is closed, oriented and manifold ----
+
+std::string place_of(const SceneFile& file, std::uint32_t vertex) {
+  const Triangles& t = file.scene.geometry.triangles;
+  const auto at = file.frame.outside(Float3{t.x[vertex], t.y[vertex], t.z[vertex]});
+  std::ostringstream text;
+  text.precision(9);
+  text << '(' << at[0] << ", " << at[1] << ", " << at[2] << ')';
+  return text.str();
+}
+
+std::string counted(std::size_t count, const char* what) {
+  return std::to_string(count) + ' ' + what + (count == 1 ? "" : "s");
+}
+
+/// The number of edges of a kind, and where the first is.
+std::string edges_text(const SceneFile& file, const Findings<MeshEdge>& found, const char* what) {
+  const MeshEdge& first = found.first[0];
+  return counted(found.count, what) + (found.count > 1 ? ", the first from " : ", from ") +
+         place_of(file, first.from) + " to " + place_of(file, first.to);
+}
+
+Json to_json(const Findings<MeshEdge>& found) {
+  Json first = Json::array();
+  for (const MeshEdge& e : found.first)
+    first.push_back({{"triangle", e.id}, {"from", e.from}, {"to", e.to}});
+  return {{"count", found.count}, {"first", first}};
+}
+Json to_json(const Findings<std::uint32_t>& found) {
+  return {{"count", found.count}, {"first", found.first}};
+}
+
+/// A line, or two: closed or where it is open, and other defects.
+std::string mesh_text(const SceneFile& file) {
+  const MeshCheck mesh = check_mesh(file.scene);
+  std::string text = "mesh          ";
+  text += mesh.is_closed() ? "closed" : edges_text(file, mesh.open_edges, "open edge");
+  text += mesh.is_oriented()
+              ? "; oriented"
+              : "; " + edges_text(file, mesh.inconsistent_edges, "inconsistent edge");
+  std::string others;
+  const auto add = [&](std::size_t count, const char* what) {
+    if (count > 0)
+      others += (others.empty() ? "" : ", ") + counted(count, what);
+  };
+  add(mesh.nonmanifold_edges.count, "non-manifold edge");
+  add(mesh.duplicate_triangles.count, "duplicate triangle");
+  add(mesh.degenerate_triangles.count, "degenerate triangle");
+  add(mesh.nonfinite_triangles.count, "non-finite triangle");
+  return text + (mesh.is_edge_manifold() ? "; edge-manifold\n" : "\n") +
+         (others.empty() ? "" : "              " + others + '\n');
+}
+
+Json mesh_json(const SceneFile& file) {
+  const MeshCheck mesh = check_mesh(file.scene);
+  return {{"closed", mesh.is_closed()},
+          {"oriented", mesh.is_oriented()},
+          {"edge_manifold", mesh.is_edge_manifold()},
+          {"vertices", mesh.vertices},
+          {"edges", mesh.edges},
+          {"open_edges", to_json(mesh.open_edges)},
+          {"inconsistent_edges", to_json(mesh.inconsistent_edges)},
+          {"nonmanifold_edges", to_json(mesh.nonmanifold_edges)},
+          {"duplicate_triangles", to_json(mesh.duplicate_triangles)},
+          {"degenerate_triangles", to_json(mesh.degenerate_triangles)},
+          {"nonfinite_triangles", to_json(mesh.nonfinite_triangles)}};
+}
+
+// ---- text and JSON of reports ----
 
 std::uint64_t peak_bytes() {
   rusage usage{};
@@ -355,6 +428,55 @@ std::string report_line_of(const RenderCommand& command, const RunReport& report
                report.render.threads == 1 ? "" : "s",
                report.ranks > 1 ? " each" : "") +
          error + '\n';
+}
+
+namespace {
+
+bool any(Float3 v) {
+  return v.x != 0 || v.y != 0 || v.z != 0;
+}
+
+bool any(const std::vector<float>& values) {
+  return std::ranges::any_of(values, [](float value) { return value != 0; });
+}
+
+bool has_normals(const Triangles& t) {
+  return any(t.nx) || any(t.ny) || any(t.nz);
+}
+
+/// The materials that primitives have.
+std::vector<Material> materials_in_use(const Scene& scene) {
+  const std::vector<char> used = used_materials(scene);
+  std::vector<Material> found;
+  for (std::size_t i = 0; i < used.size(); ++i)
+    if (used[i])
+      found.push_back(scene.materials[i]);
+  return found;
+}
+
+}  // namespace
+
+Needs needs_of(const SceneFile& file) {
+  const Geometry& geometry = file.scene.geometry;
+  const std::vector<Material> materials = materials_in_use(file.scene);
+  const auto some = [&](bool (*has)(const Material&)) {
+    return std::ranges::any_of(materials, has);
+  };
+  const bool glass = some([](const Material& m) { return m.transmission > 0; });
+  return {{"spheres", geometry.spheres.size() > 0},
+          {"triangles", geometry.triangles.size() > 0},
+          {"cones", geometry.cones.size() > 0},
+          {"planes", geometry.planes.size() > 0},
+          {"smooth_normals", has_normals(geometry.triangles)},
+          {"colors", file.colors.any()},
+          {"reflection", glass || some([](const Material& m) { return any(m.mirror); })},
+          {"refraction", glass},
+          {"fresnel", some([](const Material& m) { return m.fresnel && m.transmission > 0; })},
+          {"emission", some([](const Material& m) { return any(m.emission); })},
+          {"roughness", some([](const Material& m) { return m.roughness > 0; })},
+          {"area_lights", std::ranges::any_of(file.scene.lights, &Light::is_area)},
+          {"lens", file.lens.present && file.lens.aperture > 0},
+          {"environment", !file.environment.empty()}};
 }
 
 }  // namespace grelha

@@ -50,4 +50,10 @@ std::string info_text(const std::string& path,
                       const std::optional<std::vector<GridStats>>& grids);
 std::string report_line_of(const RenderCommand& command, const RunReport& report);
 
+/// The features of a renderer by name, and whether the scene uses them. Materials that no primitive
+/// has do not count.
+using Needs = std::vector<std::pair<const char*, bool>>;
+
+Needs needs_of(const SceneFile& file);
+
 }  // namespace grelha

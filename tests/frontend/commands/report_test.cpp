@@ -1,4 +1,3 @@
-#include "frontend/commands/needs.hpp"
 #include "frontend/commands/report.hpp"
 #include "frontend/scene/scene_file.hpp"
 
