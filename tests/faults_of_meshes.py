@@ -27,7 +27,7 @@ FAULTS = [
             "Stl.LoopsAndSolids"),
     of_mesh("loops that come back", STL, "if (end > loop_ + 3 && is_first",
             "if (false && is_first", "Stl.LoopsAndSolids"),
-    of_mesh("a second solid without its end", STL, "(ended_ && keyword == Keyword::kNone)",
+    of_mesh("a second solid without its end", STL, "(ended_ && keyword == Keyword::kUnknown)",
             "ended_", "Stl.WhatIsOdd*"),
     of_mesh("words behind the end that are warned of", STL,
             "if (skipped_.empty() && !ended_)", "if (skipped_.empty())", "Stl.WhatIsOdd*"),

@@ -1,6 +1,6 @@
 #pragma once
 // The commands and the options for users as data, taken from options.cpp. --help, the man page and
-// the shell completions are generated from it.
+// the completions of bash are generated from it.
 
 #include <string>
 #include <vector>
@@ -29,5 +29,8 @@ std::string join(const std::vector<std::string>& words, const char* between = " 
 std::string help_text(const CommandHelp& command, bool all);
 /// Help of the program itself; `all`: with everything of every command.
 std::string program_help(const std::vector<CommandHelp>& commands, bool all);
+
+std::string man_page(const std::vector<CommandHelp>& commands);
+std::string bash_completion(const std::vector<CommandHelp>& commands);
 
 }  // namespace grelha

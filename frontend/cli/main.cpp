@@ -2,10 +2,23 @@
 // written. 2: bad usage, or a scene that cannot be one. 3: an error that was not met. 128 and its
 // number: a signal stopped a render that can go on. This is the one file of the frontend that knows
 // the generators.
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <new>
+#include <string>
+#include <thread>
+#include <type_traits>
+#include <utility>
+
 #include "frontend/cli/command_line.hpp"
-#include "frontend/cli/compare_images.hpp"
 #include "frontend/cli/render_scene.hpp"
 #include "frontend/commands/batch.hpp"
+#include "frontend/commands/commands.hpp"
 #include "frontend/commands/console.hpp"
 #include "frontend/commands/nothing_seen.hpp"
 #include "frontend/commands/outputs.hpp"
@@ -16,7 +29,9 @@
 #include "frontend/files/parse_error.hpp"
 #include "frontend/files/text.hpp"
 #include "frontend/files/unfinished.hpp"
+#include "frontend/images/compare.hpp"
 #include "frontend/images/image_file.hpp"
+#include "frontend/images/tone.hpp"
 #include "frontend/jobs/checkpoint.hpp"
 #include "frontend/jobs/merge.hpp"
 #include "frontend/jobs/preparation.hpp"
@@ -26,19 +41,50 @@
 #include "grelha/render.hpp"
 #include "scenes/generators.hpp"
 
-#include <algorithm>
-#include <chrono>
-#include <csignal>
-#include <cstdio>
-#include <filesystem>
-#include <iostream>
-#include <new>
-#include <thread>
-#include <type_traits>
-
 namespace grelha {
-
 namespace {
+
+constexpr int kAboveBound = 1;  ///< exit status: the pictures differ by more
+
+std::string size_text(const Image& image) {
+  return std::to_string(image.width) + 'x' + std::to_string(image.height);
+}
+
+std::string text_of(const Comparison& c) {
+  char text[256];
+  std::snprintf(text,
+                sizeof text,
+                "RMSE %.6g, largest difference %.6g at (%d, %d), %llu of %llu pixels differ\n",
+                c.rmse,
+                c.largest,
+                c.largest_x,
+                c.largest_y,
+                static_cast<unsigned long long>(c.different),
+                static_cast<unsigned long long>(c.pixels));
+  return text;
+}
+
+/// Says how far two pictures lie apart, and writes the pictures of that. Returns the exit status.
+int compare_images(const CompareCommand& command) {
+  Encoding of_a, of_b;
+  Image a = read_image(command.a, &of_a), b = read_image(command.b, &of_b);
+  if (a.width != b.width || a.height != b.height)
+    throw UsageError("the pictures have unequal sizes, " + size_text(a) + " and " + size_text(b));
+  const bool as_light_both = of_a != of_b;
+  if (as_light_both) {
+    warn(command.a + " holds " + encoding_text(of_a) + ", " + command.b + ' ' +
+         encoding_text(of_b) + ": compared as light");
+    a = as_light(std::move(a), of_a);
+    b = as_light(std::move(b), of_b);
+  }
+  if (command.display) {
+    a = displayed(std::move(a));
+    b = displayed(std::move(b));
+  }
+  const Comparison c = compare(a, b);
+  print(text_of(c));
+  return command.max_rmse && !(c.rmse <= *command.max_rmse) ? kAboveBound : kOk;
+}
 
 /// Runs `work` and returns its exit status. If it throws, prints one line and returns the error's.
 template <class Work>

@@ -1,6 +1,6 @@
 // Part of the build: writes the man page and the completions into a folder.
 #include "frontend/cli/command_line.hpp"
-#include "frontend/cli/pages.hpp"
+#include "frontend/cli/help.hpp"
 
 #include <cstdio>
 #include <fstream>

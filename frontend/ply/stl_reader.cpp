@@ -45,9 +45,9 @@ class StlText {
   void read();
 
  private:
-  /// Words of one meaning are one: `end loop`, `ENDLOOP`. kNone: of no meaning.
+  /// Words of one meaning are one: `end loop`, `ENDLOOP`. kUnknown: of no meaning.
   enum class Keyword {
-    kNone,
+    kUnknown,
     kSolid,
     kFacet,
     kOuter,
@@ -259,8 +259,8 @@ bool parse_coordinate(std::string_view word, double& value) {
 
 /// Returns whether the word `vertex` stands in the text, before a number.
 bool has_stl_vertex(std::string_view text) {
-  constexpr std::size_t kLook = std::size_t(1) << 16;
-  Words words("", text.substr(0, kLook), 0, Comments::kNone);
+  constexpr std::size_t kFirstBytes = std::size_t(1) << 16;
+  Words words("", text.substr(0, kFirstBytes), 0, Comments::kNone);
   for (std::string_view word = words.next(); !word.empty(); word = words.next())
     if (word.size() == std::strlen("vertex") && lower(word) == "vertex") {
       double ignored = 0;
@@ -308,7 +308,7 @@ StlText::Keyword StlText::keyword_of(std::string_view word) const {
   };
   const std::string name = lower(word);
   const auto found = std::ranges::find(kNames, name, [](const auto& n) { return n.first; });
-  return found == std::end(kNames) ? Keyword::kNone : found->second;
+  return found == std::end(kNames) ? Keyword::kUnknown : found->second;
 }
 
 /// Returns whether the next word on the line is a keyword with what belongs to it, not a word of
@@ -421,9 +421,9 @@ void StlText::take_unknown(std::string_view word) {
 }
 
 void StlText::take(Keyword keyword, std::string_view word) {
-  ended_ = keyword == Keyword::kEndSolid || (ended_ && keyword == Keyword::kNone);
+  ended_ = keyword == Keyword::kEndSolid || (ended_ && keyword == Keyword::kUnknown);
   switch (keyword) {
-    case Keyword::kNone:
+    case Keyword::kUnknown:
       return take_unknown(word);
     case Keyword::kVertex:
       return read_vertex();
@@ -473,10 +473,10 @@ void StlText::finish() {
 void StlText::read() {
   for (std::string_view word = words_.next(); !word.empty(); word = words_.next()) {
     Keyword keyword = keyword_of(word);
-    if (keyword == Keyword::kNone && lower(word) == "end") {
+    if (keyword == Keyword::kUnknown && lower(word) == "end") {
       const std::string joined = "end" + lower(words_.peek_on_line());
       keyword = keyword_of(joined);
-      if (keyword != Keyword::kNone)
+      if (keyword != Keyword::kUnknown)
         words_.next();
     }
     take(keyword, word);

@@ -182,7 +182,7 @@ namespace {
 /// On a square lattice the third neighbour is one step away, at a corner as well; of points
 /// scattered as densely, .92 of that.
 constexpr std::size_t kNeighbor = 3;
-constexpr double kShare = .65;  ///< of the spacing: half would touch on a square lattice
+constexpr double kShareOfSpacing = .65;  ///< of the spacing: half would touch on a square lattice
 constexpr std::size_t kSamples = 1000;
 constexpr std::size_t kMostLooks = 20000;  ///< to each side: enough for a slab of 10^8 points
 
@@ -279,7 +279,7 @@ float radius_for(const std::vector<float>& x,
     return 1;
   const auto median = distances.begin() + std::ptrdiff_t(distances.size() / 2);
   std::ranges::nth_element(distances, median);
-  return float(kShare * *median);
+  return float(kShareOfSpacing * *median);
 }
 
 }  // namespace grelha

@@ -1,5 +1,5 @@
 #include "frontend/cli/command_line.hpp"
-#include "frontend/cli/pages.hpp"
+#include "frontend/cli/help.hpp"
 
 #include "frontend/files/text.hpp"
 #include "tests/support/parsing.hpp"
