@@ -17,7 +17,6 @@
 
 #include "frontend/cli/command_line.hpp"
 #include "frontend/cli/render_scene.hpp"
-#include "frontend/commands/batch.hpp"
 #include "frontend/commands/commands.hpp"
 #include "frontend/commands/console.hpp"
 #include "frontend/commands/nothing_seen.hpp"

@@ -2,8 +2,6 @@
 
 #include "frontend/files/other_formats.hpp"
 #include "frontend/files/text.hpp"
-#include "frontend/ply/ply_reader.hpp"
-#include "frontend/ply/stl_reader.hpp"
 
 namespace grelha {
 namespace {

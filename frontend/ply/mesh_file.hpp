@@ -11,6 +11,31 @@ namespace grelha {
 
 class LoadProgress;
 
+/// Reads the vertices and faces of a PLY file, and skips all other data. `tristrips` become
+/// triangles, without those that repeat a vertex, which only stitch strips. Every index is checked.
+/// Vertices come in the frame. Colours are those of vertices, or else of faces: bytes are sRGB,
+/// other numbers light. Throws ParseError, which names the byte inside binary data.
+Mesh read_ply_mesh(const std::string& path,
+                   std::string_view bytes,
+                   const Warn& warn = {},
+                   LoadProgress* progress = nullptr,
+                   const Frame& frame = {},
+                   bool with_colors = true);
+
+/// Returns whether bytes are STL, in a file that may be of any kind: binary of a size that tells or
+/// with a triangle, or text with a vertex.
+bool is_stl(std::string_view bytes);
+
+/// Reads an STL file, binary or text: whichever the bytes can be. Corners with the same coordinates
+/// become one vertex; vertices come in the frame, in the order in which the file names them first.
+/// Normals of facets, colours and attributes are not used. Throws ParseError, which names the byte
+/// inside binary data.
+Mesh read_stl_mesh(const std::string& path,
+                   std::string_view bytes,
+                   const Warn& warn,
+                   LoadProgress* progress,
+                   const Frame& frame);
+
 enum class MeshFormat : std::uint8_t { kNone, kPly, kStl };
 
 /// The format of a file of a mesh, by its name or else by what it holds, or by its first bytes.

@@ -1,4 +1,4 @@
-#include "frontend/ply/stl_reader.hpp"
+#include "frontend/ply/mesh_file.hpp"
 
 #include <algorithm>
 #include <array>

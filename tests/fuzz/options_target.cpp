@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "frontend/cli/command_line.hpp"
-#include "frontend/commands/batch.hpp"
+#include "frontend/commands/outputs.hpp"
 #include "frontend/files/parse_error.hpp"
 #include "tests/fuzz/target.hpp"
 

@@ -1,7 +1,7 @@
 #include "frontend/cli/command_line.hpp"
 
-#include "frontend/commands/batch.hpp"
 #include "frontend/commands/commands.hpp"
+#include "frontend/commands/outputs.hpp"
 #include "tests/support/parsing.hpp"
 #include "tests/support/temporary_folder.hpp"
 

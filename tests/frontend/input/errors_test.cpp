@@ -6,7 +6,7 @@
 
 #include "frontend/input/read_scene.hpp"
 #include "frontend/files/text.hpp"
-#include "frontend/ply/ply_reader.hpp"
+#include "frontend/ply/mesh_file.hpp"
 #include "tests/support/reading.hpp"
 
 namespace grelha {

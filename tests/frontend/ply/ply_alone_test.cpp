@@ -1,5 +1,5 @@
 #include "frontend/input/read_scene.hpp"
-#include "frontend/ply/ply_reader.hpp"
+#include "frontend/ply/mesh_file.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "frontend/input/read_scene.hpp"
-#include "frontend/ply/ply_reader.hpp"
+#include "frontend/ply/mesh_file.hpp"
 #include "tests/support/ply_writer.hpp"
 #include "tests/support/reading.hpp"
 

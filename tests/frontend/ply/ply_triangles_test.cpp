@@ -1,7 +1,7 @@
 // Rows of three indices.
 #include <gtest/gtest.h>
 
-#include "frontend/ply/ply_reader.hpp"
+#include "frontend/ply/mesh_file.hpp"
 #include "tests/support/ply_writer.hpp"
 #include "tests/support/reading.hpp"
 

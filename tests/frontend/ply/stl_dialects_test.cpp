@@ -5,7 +5,7 @@
 #include <set>
 
 #include "frontend/files/text.hpp"
-#include "frontend/ply/stl_reader.hpp"
+#include "frontend/ply/mesh_file.hpp"
 #include "tests/support/reading.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // STL, binary and text, against PLY files of the same meshes.
-#include "frontend/ply/stl_reader.hpp"
+#include "frontend/ply/mesh_file.hpp"
 
 #include <cstring>
 
