@@ -71,14 +71,14 @@ T fitting(const std::string& option,
   return *value;
 }
 
-/// Parses a length in a scene, from 0 to kLargest.
+/// Parses a length in a scene, from 0 to kLargestLength.
 double not_negative(const std::string& option, const std::string& text, const char* what) {
   const std::string expected = std::string(what) + " from 0 to 1e18";
-  return fitting<double>(option, text, expected, [](double v) { return v >= 0 && v <= kLargest; });
+  return fitting<double>(option, text, expected, [](double v) { return v >= 0 && v <= kLargestLength; });
 }
 
 bool is_coordinate(double value) {
-  return std::abs(value) <= kLargest;
+  return std::abs(value) <= kLargestLength;
 }
 
 template <class T>
@@ -286,12 +286,12 @@ double angle(const std::string& text) {
 }
 
 double picture_height(const std::string& text) {
-  const auto fits = [](double v) { return v > 0 && v <= kLargest; };
+  const auto fits = [](double v) { return v > 0 && v <= kLargestLength; };
   return fitting<double>("--orthographic", text, "a height above 0 and up to 1e18", fits);
 }
 
 double point_radius(const std::string& text) {
-  const auto fits = [](double v) { return v > 0 && v <= kLargest; };
+  const auto fits = [](double v) { return v > 0 && v <= kLargestLength; };
   return text == "auto" ? 0 : fitting<double>("--points", text, "auto, or a radius above 0", fits);
 }
 

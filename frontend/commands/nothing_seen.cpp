@@ -7,6 +7,7 @@
 
 #include "grelha/render.hpp"
 #include "grelha/scene_spans.hpp"
+#include "kernel/scene/light_unit.hpp"
 
 namespace grelha {
 namespace {
@@ -93,11 +94,9 @@ double max_radiance(const Scene& scene, const RenderOptions& options) {
   return term;
 }
 
-/// See kernel/scene/light_unit.hpp.
 double most_held(const RenderOptions& options) {
-  constexpr double kMostTerm = 0x1p20, kMostOfAll = 0x1p25;
   const int samples = options.refine.on() ? kMostSamples : options.sampling.samples;
-  return std::min(kMostTerm, kMostOfAll / samples);
+  return std::min<double>(kMostTerm, double{kMostLight} / samples);
 }
 
 }  // namespace

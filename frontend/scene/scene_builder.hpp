@@ -11,15 +11,13 @@
 #include "frontend/scene/mesh.hpp"
 #include "frontend/scene/polygon.hpp"
 #include "frontend/scene/scene_file.hpp"
+#include "grelha/coordinates.hpp"
 
 namespace grelha {
 
-/// Largest coordinate or radius that is drawn: squares of differences still fit a float.
-inline constexpr float kLargest = 1e18f;
-
 /// False for NaN as well.
 inline bool is_finite_float(float v) {
-  return v >= -kLargest && v <= kLargest;
+  return v >= -kLargestLength && v <= kLargestLength;
 }
 inline bool is_finite_float(const Float3& v) {
   return is_finite_float(v.x) && is_finite_float(v.y) && is_finite_float(v.z);

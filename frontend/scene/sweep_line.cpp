@@ -44,7 +44,7 @@ class FillingSweep {
 
   std::optional<EvenOddFill> run() {
     for (std::uint32_t point = 0; point < points_.size(); ++point) {
-      pass(point);
+      process_event(point);
       if (!is_arranged_)
         return std::nullopt;
     }
@@ -64,8 +64,8 @@ class FillingSweep {
     std::uint32_t below = kNone, above = kNone;
   };
 
-  bool go_on(std::uint32_t point);
-  void pass(std::uint32_t point);
+  bool continue_edge(std::uint32_t point);
+  void process_event(std::uint32_t point);
   Fronts end_edges(std::uint32_t point, SweepLine::Iterator& above);
   void begin_edges(std::uint32_t point,
                    SweepLine::Iterator above,
@@ -77,7 +77,7 @@ class FillingSweep {
   void add(Front& front, std::uint32_t point, bool is_above);
   void add_below(Front& front, std::uint32_t point) { add(front, point, false); }
   void add_above(Front& front, std::uint32_t point) { add(front, point, true); }
-  void close(std::uint32_t front, std::uint32_t point);
+  void close_front(std::uint32_t front, std::uint32_t point);
 
   void check_winding(std::int32_t winding, bool is_inside) {
     fill_.is_crossed = fill_.is_crossed || winding != (is_inside ? 1 : 0);
@@ -113,7 +113,7 @@ class FillingSweep {
 };
 
 /// One edge ends and one begins, at the same position.
-bool FillingSweep::go_on(std::uint32_t point) {
+bool FillingSweep::continue_edge(std::uint32_t point) {
   if (!events_.goes_on(point))
     return false;
   const SweepLine::Iterator at = iterators_[events_.first_ending(point)];
@@ -134,8 +134,8 @@ bool FillingSweep::go_on(std::uint32_t point) {
   return true;
 }
 
-void FillingSweep::pass(std::uint32_t point) {
-  if (go_on(point))
+void FillingSweep::process_event(std::uint32_t point) {
+  if (continue_edge(point))
     return;
   if (events_.first_ending(point) == kNone && events_.first_start(point) == kNone)
     return;  // all its edges lay on others
@@ -178,7 +178,7 @@ FillingSweep::Fronts FillingSweep::end_edges(std::uint32_t point, SweepLine::Ite
       break;
     }
     if (front != kNone)
-      close(front, point);
+      close_front(front, point);
   }
   if (fronts.below != kNone)
     add_above(fronts_[fronts.below], point);
@@ -293,7 +293,7 @@ void FillingSweep::add(Front& front, std::uint32_t point, bool is_above) {
 
 /// Both edges end at the point, which sees all of the front. Corners in line with it stand on one
 /// of the edges that end: they are cut off from the corner beside them.
-void FillingSweep::close(std::uint32_t front, std::uint32_t point) {
+void FillingSweep::close_front(std::uint32_t front, std::uint32_t point) {
   closing_.clear();
   for (std::uint32_t node = fronts_[front].low; node != kNone; node = nodes_[node].up)
     closing_.push_back(nodes_[node].point);

@@ -12,6 +12,10 @@
 
 namespace grelha {
 
+/// Largest coordinate, radius or height that scenes, rays and cameras are computed with: squares of
+/// differences still fit a float.
+inline constexpr double kLargestLength = 1e18;
+
 /// Points of a caller, each x y z, at any address. They are referred to, not copied.
 struct PointArray {
   const char* data = nullptr;      ///< x of the first point

@@ -9,8 +9,6 @@
 namespace grelha {
 namespace {
 
-constexpr double kLargest = 1e18;  ///< what rays and primitives are computed with
-
 struct Place {
   const char* rows;
   std::size_t row;
@@ -41,7 +39,7 @@ PointBounds checked_bounds(const PointArray& points, const Geometry& shapes) {
   each_used(shapes, points.count, [&](std::size_t i) {
     for (std::size_t a = 0; a < 3; ++a) {
       const double value = points.at(i, a);
-      if (!(std::abs(value) <= kLargest))
+      if (!(std::abs(value) <= kLargestLength))
         refuse(points.name + std::string(": expected finite numbers within 1e18"),
                std::to_string(value),
                {"element", i, a});
@@ -104,7 +102,7 @@ Geometry spheres_of(std::span<const Number> radii) {
   Geometry made;
   made.spheres.radius.assign(radii.begin(), radii.end());
   for (std::size_t i = 0; i < radii.size(); ++i)
-    if (!(made.spheres.radius[i] > 0 && double{radii[i]} <= kLargest))
+    if (!(made.spheres.radius[i] > 0 && double{radii[i]} <= kLargestLength))
       refuse("radii: expected numbers above 0 and within 1e18",
              std::to_string(radii[i]),
              {"element", i});

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "grelha/coordinates.hpp"
 #include "kernel/base/sine.hpp"
 #include "kernel/scene/frame.hpp"
 
@@ -50,8 +51,7 @@ bool lens_is_valid(const Camera& c) {
 }
 
 bool height_is_valid(const Camera& c) {
-  constexpr double kMostHeight = 1e18;  // floats hold its square
-  return c.orthographic_height > 0 && c.orthographic_height <= kMostHeight;
+  return c.orthographic_height > 0 && c.orthographic_height <= kLargestLength;
 }
 
 /// Squared sine of the least angle between view and up: below it rounding decides where right is.

@@ -227,7 +227,7 @@ View FileScene::view_for(const ViewArguments& given) const {
   options.angle_deg = optional_number(given.angle, "angle");
   options.orthographic_height = optional_number(given.orthographic, "orthographic");
   if (const auto& height = options.orthographic_height;
-      height && !(*height > 0 && *height <= kLargest))
+      height && !(*height > 0 && *height <= kLargestLength))
     wrong_value("orthographic", "a height above 0, at most 1e18", std::to_string(*height));
   if (!given.orbit.is_none())
     options.orbit = orbit_in(given.orbit);

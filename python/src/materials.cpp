@@ -11,7 +11,7 @@ namespace grelha::python {
 
 Float3 color_of(const std::array<double, 3>& p, const char* name) {
   for (const double channel : p)
-    if (!(channel >= 0 && channel <= kLargest))
+    if (!(channel >= 0 && channel <= kLargestLength))
       wrong_value(name, "light from 0 to 1e18", std::to_string(channel));
   return {float(p[0]), float(p[1]), float(p[2])};
 }
@@ -63,7 +63,7 @@ namespace {
 
 float at_least_0(py::handle given, const std::string& name) {
   const double number = number_in(given, name.c_str());
-  if (!(number >= 0 && number <= kLargest))
+  if (!(number >= 0 && number <= kLargestLength))
     wrong_value(name.c_str(), "a number from 0 to 1e18", std::to_string(number));
   return float(number);
 }
@@ -100,7 +100,7 @@ MeshOptions meshes_in(bool colors, py::handle points, py::handle smooth) {
     meshes.point_radius = 0;
   } else if (!points.is_none()) {
     meshes.point_radius = number_in(points, "points");
-    if (!(*meshes.point_radius > 0 && *meshes.point_radius <= kLargest))
+    if (!(*meshes.point_radius > 0 && *meshes.point_radius <= kLargestLength))
       wrong_value("points", "\"auto\" or a radius above 0", std::to_string(*meshes.point_radius));
   }
   meshes.smooth_deg = smoothness_in(smooth);
