@@ -69,9 +69,8 @@ void check_refined(const RenderCommand& command) {
 }
 
 void check_sampler(const Effects& e) {
-  if (e.jitter > 1 && e.sampler && !is_jittered(*e.sampler))
-    throw UsageError(
-        "--aa jitter:N and --sampler: expected jitter or unshuffled for jittered subpixels");
+  if (e.jitter > 1 && e.sampler && *e.sampler != Sampler::kJitter)
+    throw UsageError("--aa jitter:N and --sampler: expected jitter for jittered subpixels");
   if (e.adaptive.on && e.sampler == Sampler::kBlue)
     throw UsageError(
         "--aa adaptive and --sampler: expected any but blue, which is of whole pixels");

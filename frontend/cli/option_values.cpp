@@ -74,7 +74,8 @@ T fitting(const std::string& option,
 /// Parses a length in a scene, from 0 to kLargestLength.
 double not_negative(const std::string& option, const std::string& text, const char* what) {
   const std::string expected = std::string(what) + " from 0 to 1e18";
-  return fitting<double>(option, text, expected, [](double v) { return v >= 0 && v <= kLargestLength; });
+  return fitting<double>(
+      option, text, expected, [](double v) { return v >= 0 && v <= kLargestLength; });
 }
 
 bool is_coordinate(double value) {
