@@ -4,7 +4,7 @@
 #include <iterator>
 #include <utility>
 
-#include "kernel/base/expansion.hpp"
+#include "kernel/base/exact_numbers.hpp"
 
 namespace grelha {
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "kernel/base/expansion.hpp"
+#include "kernel/base/exact_numbers.hpp"
 #include "kernel/grid/world_impl.hpp"
 #include "kernel/scene/visible.hpp"
 #include "kernel/shapes/triangle.hpp"

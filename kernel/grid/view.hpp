@@ -5,8 +5,7 @@
 #include <cstdint>
 
 #include "grelha/rays.hpp"
-#include "kernel/shapes/copies.hpp"
-#include "kernel/shapes/geometry_view.hpp"
+#include "kernel/shapes/shapes.hpp"
 
 namespace grelha {
 

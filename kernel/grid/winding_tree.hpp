@@ -7,7 +7,7 @@
 #include "grelha/scene_spans.hpp"
 #include "kernel/base/raw_vector.hpp"
 #include "kernel/grid/view.hpp"
-#include "kernel/shapes/triangle_block.hpp"
+#include "kernel/shapes/triangle.hpp"
 
 namespace grelha {
 

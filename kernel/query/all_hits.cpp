@@ -4,7 +4,7 @@
 
 #include "kernel/query/lists.hpp"
 #include "kernel/query/ray_lists.hpp"
-#include "kernel/shapes/exact_hits.hpp"
+#include "kernel/shapes/hit.hpp"
 
 namespace grelha {
 namespace {

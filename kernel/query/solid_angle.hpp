@@ -3,7 +3,7 @@
 
 #include <initializer_list>
 
-#include "kernel/shapes/crossing.hpp"
+#include "kernel/shapes/hit.hpp"
 #include "kernel/shapes/triangle.hpp"
 
 namespace grelha::GRELHA_ISA {

@@ -1,4 +1,4 @@
-#include "kernel/shapes/crossing.hpp"
+#include "kernel/shapes/hit.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -7,7 +7,7 @@
 #include <cstring>
 #include <utility>
 
-#include "kernel/base/wide_integer.hpp"
+#include "kernel/base/exact_numbers.hpp"
 
 namespace grelha {
 namespace {

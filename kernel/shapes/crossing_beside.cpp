@@ -1,7 +1,7 @@
 // Crossings of a ray that is moved aside by an infinitesimal amount.
 #include <cmath>
 
-#include "kernel/shapes/crossing.hpp"
+#include "kernel/shapes/hit.hpp"
 
 namespace grelha {
 namespace {

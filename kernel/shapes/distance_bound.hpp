@@ -3,8 +3,8 @@
 // time. They bound; doubles decide. docs/numerics.md ("Closest points") derives the bounds.
 
 #include "kernel/base/vec3.hpp"
-#include "kernel/shapes/cone_fields.hpp"
-#include "kernel/shapes/simd_fields.hpp"
+#include "kernel/shapes/cone.hpp"
+#include "kernel/shapes/arrays.hpp"
 #include "kernel/shapes/sphere.hpp"
 #include "kernel/shapes/triangle.hpp"
 

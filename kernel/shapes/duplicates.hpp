@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "kernel/shapes/copies.hpp"
+#include "kernel/shapes/shapes.hpp"
 #include "kernel/shapes/primitives.hpp"
 
 namespace grelha {

@@ -1,10 +1,11 @@
-#include "kernel/shapes/exact_hits.hpp"
+#include "kernel/shapes/hit.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "kernel/shapes/axis_crossing.hpp"
+#include "kernel/shapes/shapes.hpp"
 #include "kernel/shapes/rounding.hpp"
 
 namespace grelha {

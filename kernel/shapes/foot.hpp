@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "kernel/shapes/geometry_view.hpp"
+#include "kernel/shapes/shapes.hpp"
 
 namespace grelha {
 

@@ -3,7 +3,7 @@
 
 #include <type_traits>
 
-#include "kernel/shapes/geometry_view.hpp"
+#include "kernel/shapes/shapes.hpp"
 
 namespace grelha::GRELHA_ISA {
 

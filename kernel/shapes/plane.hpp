@@ -6,7 +6,7 @@
 #include "grelha/scene_spans.hpp"
 #include "kernel/shapes/arrays.hpp"
 #include "kernel/shapes/surface_position.hpp"
-#include "kernel/shapes/refine_span.hpp"
+#include "kernel/shapes/hit.hpp"
 #include "kernel/base/vec3.hpp"
 
 namespace grelha {

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "grelha/scene_spans.hpp"
-#include "kernel/shapes/geometry_view.hpp"
+#include "kernel/shapes/shapes.hpp"
 
 namespace grelha {
 

@@ -6,12 +6,13 @@
 // namespace of an instruction set, how rays intersect it.
 
 #include <cstddef>
+#include <cstdint>
 #include <type_traits>
 
 #include "kernel/shapes/cone.hpp"
 #include "kernel/shapes/plane.hpp"
 #include "kernel/shapes/sphere.hpp"
-#include "kernel/shapes/triangle_surface.hpp"
+#include "kernel/shapes/triangle.hpp"
 
 namespace grelha {
 
@@ -97,6 +98,113 @@ struct PerShape<Member, ShapeSet<Shape...>> : Member<Shape>... {
   template <class S>
   [[gnu::always_inline]] constexpr const Member<S>& of() const {
     return *this;
+  }
+};
+
+// Which primitive an id is.
+
+/// The ids of each kind. Kinds follow each other in the order of PrimitiveKind, each in the
+/// caller's order; of two hits at equal t the lower id wins.
+struct PrimitiveIds {
+  std::uint32_t first[kKinds + 1] = {};  ///< of each kind; the last: where all end
+
+  [[gnu::always_inline]] constexpr std::uint32_t begin(PrimitiveKind kind) const {
+    return first[static_cast<std::size_t>(kind)];
+  }
+  [[gnu::always_inline]] constexpr std::uint32_t end(PrimitiveKind kind) const {
+    return first[static_cast<std::size_t>(kind) + 1];
+  }
+  [[gnu::always_inline]] constexpr std::uint32_t count(PrimitiveKind kind) const {
+    return end(kind) - begin(kind);
+  }
+  [[gnu::always_inline]] constexpr std::uint32_t end() const { return first[kKinds]; }
+  /// True if an id is of a kind.
+  [[gnu::always_inline]] constexpr bool has(PrimitiveKind kind, std::uint32_t id) const {
+    return id - begin(kind) < count(kind);
+  }
+  /// The kind of an id below end().
+  [[gnu::always_inline]] constexpr PrimitiveKind kind_of(std::uint32_t id) const {
+    std::size_t kind = 0;
+    for (std::size_t k = 1; k < kKinds; ++k)
+      kind += id >= first[k] ? 1 : 0;
+    return static_cast<PrimitiveKind>(kind);
+  }
+  /// The primitive of an id below end().
+  [[gnu::always_inline]] constexpr Primitive primitive(std::uint32_t id) const {
+    const PrimitiveKind kind = kind_of(id);
+    return {kind, id - begin(kind)};
+  }
+};
+
+/// Calls visit.operator()<Shape>(index) for the kind of an id, one of a set's, and its index among
+/// those of that kind.
+template <class First, class... Rest, class Visit>
+[[gnu::always_inline]] constexpr auto visit_shape(ShapeSet<First, Rest...>,
+                                                  const PrimitiveIds& ids,
+                                                  std::uint32_t id,
+                                                  const Visit& visit) {
+  if constexpr (sizeof...(Rest) > 0)
+    if (id >= ids.end(First::kKind))
+      return visit_shape(ShapeSet<Rest...>{}, ids, id, visit);
+  return visit.template operator()<First>(id - ids.begin(First::kKind));
+}
+
+// The primitives of a scene as plain pointers.
+
+template <class Shape>
+struct ArraysOf : Shape::Arrays {};
+
+/// The primitives of each kind by index.
+struct GeometryView : PerShape<ArraysOf, Shapes> {
+  PrimitiveIds ids;
+};
+
+/// Primitive i of a kind.
+template <class Shape>
+typename Shape::template Fields<float> primitive_at(const typename Shape::Arrays& all,
+                                                    std::uint32_t i) {
+  if constexpr (Shape::kKind == PrimitiveKind::kTriangle) {
+    return all.triangle(i);
+  } else {
+    return one_of<Shape>(all.fields, i);
+  }
+}
+
+/// Calls visit.operator()<Shape>(fields) for a primitive.
+template <class Visit>
+auto visit_primitive(const GeometryView& g, std::uint32_t id, const Visit& visit) {
+  return visit_shape(Shapes{}, g.ids, id, [&]<class Shape>(std::uint32_t i) {
+    return visit.template operator()<Shape>(primitive_at<Shape>(g.of<Shape>(), i));
+  });
+}
+
+// Exact copies of primitives that stand in no cell: their originals stand there for them.
+
+/// A primitive and one of its copies, which has a higher id.
+struct Copy {
+  std::uint32_t original, copy;
+  friend auto operator<=>(const Copy&, const Copy&) = default;
+};
+
+/// Copies in order of their originals, then of their ids. Inlined, or the linker could take another
+/// file's.
+struct CopyTable {
+  const Copy* pair = nullptr;
+  std::uint32_t count = 0;
+
+  /// The first pair of an original, if it has() one; others follow.
+  [[gnu::always_inline]] std::uint32_t begin(std::uint32_t id) const {
+    std::uint32_t first = 0;
+    for (std::uint32_t left = count; left > 0;) {
+      const std::uint32_t half = left / 2;
+      const bool is_less = pair[first + half].original < id;
+      first = is_less ? first + half + 1 : first;
+      left = is_less ? left - half - 1 : half;
+    }
+    return first;
+  }
+  [[gnu::always_inline]] bool has(std::uint32_t i, std::uint32_t id) const {
+    return i < count && pair[i].original == id;
   }
 };
 

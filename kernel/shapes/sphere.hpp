@@ -9,7 +9,7 @@
 #include "kernel/shapes/arrays.hpp"
 #include "kernel/shapes/box.hpp"
 #include "kernel/shapes/surface_position.hpp"
-#include "kernel/shapes/refine_span.hpp"
+#include "kernel/shapes/hit.hpp"
 #include "kernel/base/vec3.hpp"
 
 namespace grelha {

@@ -7,7 +7,7 @@
 // pbrt's idea (Pharr, Jakob, Humphreys, PBR 4th ed., 6.8), one scalar bound for all axes.
 // Derivations: docs/numerics.md; kept by leaving_test.cpp.
 
-#include "kernel/shapes/geometry_view.hpp"
+#include "kernel/shapes/shapes.hpp"
 
 namespace grelha::GRELHA_ISA {
 

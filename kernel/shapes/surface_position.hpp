@@ -3,7 +3,7 @@
 
 #include <type_traits>
 
-#include "kernel/shapes/simd_fields.hpp"
+#include "kernel/shapes/arrays.hpp"
 #include "kernel/base/vec3.hpp"
 
 namespace grelha::GRELHA_ISA {

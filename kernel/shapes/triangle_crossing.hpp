@@ -1,7 +1,7 @@
 #pragma once
 // Crossing points of rays and triangles, and rays that are past a triangle's plane.
 
-#include "kernel/shapes/simd_rays.hpp"
+#include "kernel/shapes/hit.hpp"
 
 namespace grelha::GRELHA_ISA {
 

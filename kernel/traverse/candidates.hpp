@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "kernel/shapes/triangle_block.hpp"
+#include "kernel/shapes/triangle.hpp"
 
 namespace grelha {
 

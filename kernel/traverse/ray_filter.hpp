@@ -2,7 +2,7 @@
 // Primitives that rays leave out.
 
 #include "kernel/base/isa.hpp"
-#include "kernel/shapes/copies.hpp"
+#include "kernel/shapes/shapes.hpp"
 
 namespace grelha::GRELHA_ISA {
 

@@ -2,7 +2,7 @@
 // Rays as arrays, a component each, and what those that are traced together have in common.
 
 #include "kernel/grid/view.hpp"
-#include "kernel/shapes/exact_hits.hpp"
+#include "kernel/shapes/hit.hpp"
 #include "kernel/shapes/sphere.hpp"
 #include "kernel/traverse/candidates.hpp"
 #include "kernel/traverse/ray_filter.hpp"

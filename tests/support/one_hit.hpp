@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "grelha/geometry.hpp"
-#include "kernel/shapes/exact_hits.hpp"
+#include "kernel/shapes/hit.hpp"
 
 namespace grelha::test {
 

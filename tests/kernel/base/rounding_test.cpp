@@ -7,7 +7,7 @@
 
 #define GRELHA_ISA scalar
 #include "kernel/shapes/rounding.hpp"
-#include "kernel/shapes/refine_span.hpp"
+#include "kernel/shapes/hit.hpp"
 #include "kernel/base/lanes.hpp"
 #include "tests/support/random.hpp"
 

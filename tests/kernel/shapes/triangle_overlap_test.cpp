@@ -1,6 +1,6 @@
 // Which cells a triangle overlaps: needles, whose normals rounding spoils.
 
-#include "kernel/shapes/triangle_overlap.hpp"
+#include "kernel/shapes/triangle.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,9 +3,8 @@
 #include <gmpxx.h>
 #include <gtest/gtest.h>
 
-#include "kernel/base/expansion.hpp"
-#include "kernel/base/wide_integer.hpp"
-#include "kernel/shapes/crossing.hpp"
+#include "kernel/base/exact_numbers.hpp"
+#include "kernel/shapes/hit.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/rational.hpp"
 
