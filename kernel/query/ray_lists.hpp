@@ -3,7 +3,7 @@
 
 #include "grelha/query.hpp"
 #include "kernel/grid/world_impl.hpp"
-#include "kernel/traverse/single_ray.hpp"
+#include "kernel/traverse/ray.hpp"
 
 namespace grelha {
 

@@ -2,7 +2,7 @@
 // How rays go from cell to cell of a grid: the rule for many rays side by side, one a lane, and for
 // one ray. Plane distances come from the plane's index, never by adding up.
 
-#include "kernel/traverse/single_tests.hpp"
+#include "kernel/traverse/packet.hpp"
 
 namespace grelha::GRELHA_ISA {
 

@@ -1,18 +1,18 @@
 #pragma once
-// A packet: rays side by side that walk grids and are tested against primitives.
+// A packet: rays side by side that walk grids and are tested against primitives; how the hits of
+// rays, in packets and alone, are taken; and t of hits, rounded once: in double, side by side, and
+// exactly where doubles cannot decide which float is nearest.
 
 #include "grelha/stats.hpp"
 #include "kernel/base/vec3.hpp"
-#include "kernel/traverse/ray_group.hpp"
-#include "kernel/traverse/slab.hpp"
-#include "kernel/traverse/tolerances.hpp"
+#include "kernel/traverse/ray.hpp"
+#include "kernel/shapes/shapes.hpp"
 
 namespace grelha::GRELHA_ISA {
 
 /// Most rays in a packet. A word has a bit for each group of lanes.
 inline constexpr int kPacket = kWidth<VFloat> == 1 ? 64 : 256;
 inline constexpr int kMostFields = 9;  ///< those of a triangle; see kKeepsFields
-inline constexpr float kGreatest = 0x1.fffffep127f;
 
 /// Rows of floats that are to be read or written soon. Asked for line by line, with work between,
 /// they come without being waited for: the first cache waits for few lines at once.
@@ -85,22 +85,6 @@ struct Packet : RayGroup<kPacket> {
   SingleRayStats single_ray_stats;
 };
 
-/// Least size of a direction's components. A smaller one crosses no plane across its axis on any
-/// way that counts; with this in its place, no NaN appears.
-template <class Real>
-inline Real min_advance(const Real& x, const Real& y, const Real& z) {
-  return Real(kMinAdvance) * max_abs(max_abs(x, y), z);
-}
-
-/// Three components of lanes i, i + 1, ...
-template <class Real, class Number, int kRays>
-[[gnu::always_inline]] inline Vec3<Real> take_vec(const Number (&v)[3][kRays], int i) {
-  return {
-      take<Real>(v[0] + i),
-      take<Real>(v[1] + i),
-      take<Real>(v[2] + i),
-  };
-}
 inline VFloat min_advance(const Packet& p, int i) {
   const Vec3<VFloat> d = take_vec<VFloat>(p.dir, i);
   return min_advance(d.x, d.y, d.z);
@@ -116,37 +100,6 @@ inline void fill_up(Packet& p) {
     p.t_min[i] = 0;
     p.best[i] = -kInfinity;
   }
-}
-
-/// Squares of directions up to this have no inverse in float.
-inline constexpr float kNoInverse = 0x1p-128f;
-/// Squared lengths of directions that are traced as they are. With others products of t, lengths of
-/// directions and sizes of primitives, from 2^-60 to 2^60, leave what floats can hold.
-inline constexpr float kShortest = 0x1p-4f;
-inline constexpr float kLongest = 0x1p16f;
-
-/// The powers of two by which directions are divided so that their largest component is in [1, 2);
-/// 1 where they are fine as they are, or sound at no length.
-template <class Real>
-inline Real length_unit(const Vec3<Real>& dir) {
-  const Real squared = dot(dir, dir);
-  const Mask<Real> fine = mask_and(squared >= Real(kShortest), squared <= Real(kLongest));
-  const Mask<Real> sound = mask_and(squared > Real(kNoInverse), squared < Real(kInfinity));
-  constexpr int kMantissa = 23;
-  const Int<Real> exponent = float_bits(largest(dir)) >> kMantissa;
-  return select(and_not(sound, fine), bits_float(Int<Real>(exponent << kMantissa)), Real(1));
-}
-
-/// The end of a search by a direction that was divided by `unit`: never so far that t is no float.
-inline float finite_end(float unit, float t_max) {
-  return t_max == kInfinity && unit < 1 ? kGreatest : t_max;
-}
-/// Ends of a search in multiples of `unit`, rounded outwards: floats within are sure to be within
-/// what the caller gave, and exact tests read that.
-inline void count_in(float unit, float& t_min, float& t_max) {
-  const double by = unit;
-  t_min = round_down(by * t_min);
-  t_max = round_up(by * t_max);
 }
 
 /// Keeps the ends of searches as the caller gave them.
@@ -253,6 +206,408 @@ inline void need_slabs(Packet& p) {
   for (int g = 0; !p.has_slabs && g < p.groups; ++g)
     set_slabs(p, g * kWidth<VFloat>);
   p.has_slabs = true;
+}
+
+/// Counts tests of a kind; those of a kind without a counter are not counted.
+template <class Shape>
+[[gnu::always_inline]] inline void count_tests(TraceCounts& n, unsigned tests) {
+  if constexpr (Shape::kKind == PrimitiveKind::kSphere)
+    n.tests.sphere += tests;
+  else if constexpr (Shape::kKind == PrimitiveKind::kTriangle)
+    n.tests.triangle += tests;
+  else if constexpr (Shape::kKind == PrimitiveKind::kCone)
+    n.tests.cone += tests;
+  else if constexpr (Shape::kKind == PrimitiveKind::kPlane)
+    n.tests.plane += tests;
+}
+
+/// Replaces TraceCounts when no caller asks for them: clearing these took up to a twentieth of a
+/// call for one ray.
+struct NoCounts {};
+
+/// Counts the rows of primitives that a ray is tested against.
+template <class Shape>
+inline void count_rows(TraceCounts& n, int rows, int width) {
+  n.rows.primitives += static_cast<unsigned>(rows);
+  count_tests<Shape>(n, static_cast<unsigned>(rows * width));
+}
+template <class Shape>
+inline void count_rows(NoCounts&, int, int) {}
+
+/// Takes a hit that floats cannot tell from ray i's hit so far, `held`, or from the end of its
+/// search: returns which counts, or kNoPrimitive, and `span` of the first one.
+[[gnu::noinline, gnu::cold]] inline std::uint32_t settle_tie(
+    const RayFrame& frame, int i, std::uint32_t held, std::uint32_t id, CrossingSpan& span) {
+  const ExactRay ray = frame.given.ray(i);
+  const double shift = frame.given.shift_of(i);
+  if (held != kNoPrimitive && meet_on_axis(*frame.geometry, ray, id, held))
+    return id < held ? id : held;  // `span` holds t of both
+  if (held != kNoPrimitive)
+    return is_closest(*frame.geometry, ray, id, held, shift, span) ? id : held;
+  if (!is_before_end(*frame.geometry, ray, id))
+    return kNoPrimitive;
+  span = crossing_span(*frame.geometry, ray, id, shift);
+  return id;
+}
+
+/// Takes one hit. Returns whether the search is over (kAny and something was hit).
+template <bool kAny, class Ray>
+[[gnu::always_inline]] inline bool take_hit(Ray r, const CrossingSpan& t, std::uint32_t id) {
+  if (!(t.lo <= r.rays.best[r.i]))
+    return false;
+  if (const RayFilter* const filter = r.rays.filter) [[unlikely]] {
+    id = filter->hit_of(r.i, id);
+    if (id == kNoPrimitive)
+      return false;
+  }
+  CrossingSpan first = t;
+  if (!(t.hi < r.rays.low[r.i])) {
+    if (id == id_of(r))
+      return false;
+    id = settle_tie(r.rays, r.i, id_of(r), id, first);
+    if (id == kNoPrimitive)
+      return false;
+  }
+  set_hit(r, first, id);
+  return kAny;
+}
+
+/// The same of a ray of a packet, which with kAny stops searching.
+template <bool kAny>
+[[gnu::noinline]] void take_hit(Packet& p, int i, const CrossingSpan& t, std::uint32_t id) {
+  const PacketRay r{p, i};
+  if (take_hit<kAny>(r, t, id))
+    set_hit(r, {-kInfinity, -kInfinity}, id_of(r));
+}
+
+/// The rays from i on, as tests read them.
+[[gnu::always_inline]] inline SimdRays<VFloat> simd_rays(const Packet& p, int i) {
+  return {.org = take_vec<VFloat>(p.org, i),
+          .dir = take_vec<VFloat>(p.dir, i),
+          .inv_dd = load<VFloat>(p.inv_dd + i),
+          .inv_length = load<VFloat>(p.inv_length + i),
+          .t_min = load<VFloat>(p.t_min + i),
+          .frame_error = VFloat(p.frame_error),
+          .error_bound = VFloat(p.error_bound),
+          .base = p.base,
+          .given = &p.given,
+          .first = i,
+          .step = 1};
+}
+
+/// Precomputes what tests read of the directions from i on.
+[[gnu::always_inline]] inline void set_directions(Packet& p, int i, bool any_triangles) {
+  const Vec3<VFloat> d = take_vec<VFloat>(p.dir, i);
+  const VFloat inv_dd = VFloat(1) / dot(d, d);
+  store(p.inv_dd + i, inv_dd);
+  store(p.inv_length + i, inverse_length(d, inv_dd));
+  if (!any_triangles)
+    return;
+  const Vec3<VFloat> q = permute_axes(load<VFloat>(p.axis + i), d);
+  store(p.shear[0] + i, q.x / q.z);
+  store(p.shear[1] + i, q.y / q.z);
+  store(p.shear[2] + i, VFloat(1) / q.z);
+}
+
+/// Completes a packet whose org, dir, t_min, best and size are set.
+inline void prepare(Packet& p, const GeometryView& geometry, bool any_triangles) {
+  constexpr int w = kWidth<VFloat>;
+  p.geometry = &geometry;
+  p.error_bound = kInfinity;
+  p.given = {{p.org[0], p.org[1], p.org[2]}, {p.dir[0], p.dir[1], p.dir[2]}, p.t_min, p.best};
+  p.groups = (p.size + w - 1) / w;
+  p.live = ~std::uint64_t{0} >> (64 - p.groups);
+  p.has_units = false;
+  p.has_slabs = false;
+  fill_up(p);
+  for (int g = 0; g < p.groups; ++g) {
+    const int i = g * w;
+    p.ahead.prefetch_row(i);
+    store(p.id + i, VFloat(bits_of(kNoPrimitive)));
+    store(p.hit_field_id + i, VFloat(bits_of(kNoPrimitive)));
+    check_rays(p, i);
+    store(p.low + i, load<VFloat>(p.best + i));
+    if (any_triangles)
+      set_axes(p, i, g);
+    set_directions(p, i, any_triangles);
+  }
+}
+
+/// Ids of the primitives that the rays from i on hit.
+inline VUint ids_at(const Packet& p, int i) {
+  return load_words<VFloat>(reinterpret_cast<const std::uint32_t*>(p.id + i));
+}
+
+/// Takes hits of selected lanes from i on against one primitive, one by one.
+template <bool kAny>
+[[gnu::noinline]] void take_hits(
+    Packet& p, int i, const HitInterval<VFloat>& found, unsigned lanes, std::uint32_t id) {
+  float lo[kWidth<VFloat>], hi[kWidth<VFloat>];
+  store(lo, found.lo);
+  store(hi, found.hi);
+  each_bit(lanes, [&](int k) { take_hit<kAny>(p, i + k, {lo[k], hi[k]}, id); });
+}
+
+/// True if one of the rays from i on does not hit primitive `id` itself where it crosses it.
+inline bool filters_some(const Packet& p, int i, unsigned lanes, std::uint32_t id) {
+  bool some = false;
+  each_bit(lanes, [&](int k) { some |= p.filter->hit_of(i + k, id) != id; });
+  return some;
+}
+
+/// Notes hits of lanes from i on against one primitive: nearer wins, then the lower id. With kAny a
+/// hit ends the ray's search.
+template <bool kAny, class Shape>
+inline void record(Packet& p,
+                   int i,
+                   const HitInterval<VFloat>& found,
+                   std::uint32_t id,
+                   const typename Shape::template Fields<float>& met) {
+  const VFloat best = load<VFloat>(p.best + i);
+  const Mask<VFloat> candidate = mask_and(found.some, found.lo <= best);
+  if (none(candidate))
+    return;
+  if (p.filter && filters_some(p, i, bits(candidate), id)) [[unlikely]] {
+    take_hits<kAny>(p, i, found, bits(candidate), id);
+    return;
+  }
+  const VFloat low = load<VFloat>(p.low + i);
+  const Mask<VFloat> closer = mask_and(candidate, found.hi < low);
+  const VFloat over(-kInfinity);
+  store_selected(p.best + i, closer, kAny ? over : found.hi);
+  store_selected(p.low + i, closer, kAny ? over : found.lo);
+  store_selected(p.id + i, closer, VFloat(bits_of(id)));
+  if constexpr (!kAny && kKeepsFields<Shape>) {
+    int row = 0;
+    Shape::for_each_field(
+        [&](const float& x) __attribute__((always_inline)) {
+          store_selected(p.hit_field[row] + i, closer, VFloat(x));
+          ++row;
+        },
+        met);
+    store_selected(p.hit_field_id + i, closer, VFloat(bits_of(id)));
+  }
+  const unsigned other = bits_where(ids_at(p, i) != id);
+  if (const unsigned ties = bits(and_not(candidate, closer)) & other; ties != 0)
+    take_hits<kAny>(p, i, found, ties, id);
+}
+
+/// Tests all live rays against a primitive of a kind and counts that: runs `test(i, g)` for the
+/// first lane i of every live group g.
+template <class Shape, class Test>
+[[gnu::always_inline]] inline void each_tested(const Packet& p, TraceCounts& n, const Test& test) {
+  unsigned busy = 0;  // in one pass with the tests: these look at best and t_min as well
+  each_live_group(
+      p, [&](int i, int g) __attribute__((always_inline)) {
+        const unsigned on = bits(load<VFloat>(p.best + i) > load<VFloat>(p.t_min + i));
+        busy += static_cast<unsigned>(__builtin_popcount(on));
+        test(i, g);
+      });
+  n.packets.lanes_issued += static_cast<unsigned>(__builtin_popcountll(p.live) * kWidth<VFloat>);
+  n.packets.lanes_busy += busy;
+  count_tests<Shape>(n, busy);
+}
+
+/// All live rays against primitive `index` of many.
+template <bool kAny, class Shape>
+inline void test_one(Packet& p,
+                     const FieldArrays<Shape>& of,
+                     std::uint32_t index,
+                     std::uint32_t id,
+                     TraceCounts& n) {
+  const auto one = broadcast<Shape, VFloat>(of, index);
+  const auto met = one_of<Shape>(of, index);
+  each_tested<Shape>(p, n, [&](int i, int) {
+    record<kAny, Shape>(
+        p, i, intersect<Shape>(simd_rays(p, i), one, load<VFloat>(p.best + i)), id, met);
+  });
+}
+
+/// A triangle, as it is and in the frame of a packet, and the packet's rays from i on. They share
+/// an axis, or each has its own: one test for both takes 1.05 of the instructions.
+template <bool kShareAxis>
+struct TriangleSource {
+  const Packet& p;
+  const Triangle::Fields<float>& as_it_is;
+  const float (*corner)[3];
+  int i, axis;
+  std::uint32_t id;
+
+  RayAndTriangle<VFloat> operator()() const {
+    if constexpr (kShareAxis)
+      return along_axis();
+    else
+      return permuted();
+  }
+  float frame_error() const { return p.frame_error; }
+  ExactRay given(int k) const { return p.given.ray(i + k); }
+  double shift(int k) const { return p.given.shift_of(i + k); }
+  bool leaves_out(int k) const { return p.leaves_out(i + k, id); }
+  void take_vertices(int, float (&to)[3][3]) const {
+    __builtin_memcpy(to, as_it_is.corner, sizeof to);
+  }
+
+ private:
+  [[gnu::always_inline]] RayAndTriangle<VFloat> along_axis() const {
+    const int k = axis;
+    const int kx = kNextAxis[k];
+    const int ky = kPreviousAxis[k];
+    const auto at = [&](int c) {
+      const float* const v = corner[c];
+      return Vec3<VFloat>{VFloat(v[kx]), VFloat(v[ky]), VFloat(v[k])};
+    };
+    return {{load<VFloat>(p.org[kx] + i), load<VFloat>(p.org[ky] + i), load<VFloat>(p.org[k] + i)},
+            {load<VFloat>(p.dir[kx] + i), load<VFloat>(p.dir[ky] + i), load<VFloat>(p.dir[k] + i)},
+            {at(0), at(1), at(2)}};
+  }
+  [[gnu::always_inline]] RayAndTriangle<VFloat> permuted() const {
+    const VFloat axes = load<VFloat>(p.axis + i);
+    const auto at = [&](int c) {
+      const float* const v = corner[c];
+      return permute_axes<VFloat>(axes, {VFloat(v[0]), VFloat(v[1]), VFloat(v[2])});
+    };
+    return {permute_axes(axes, take_vec<VFloat>(p.org, i)),
+            permute_axes(axes, take_vec<VFloat>(p.dir, i)),
+            {at(0), at(1), at(2)}};
+  }
+};
+
+template <bool kAny>
+[[gnu::noinline]] void test_triangle(Packet& p,
+                                     const Triangle::Fields<float>& triangle,
+                                     std::uint32_t id,
+                                     TraceCounts& n) {
+  Triangle::Fields<float> framed;
+  for (int k = 0; p.base && k < 3; ++k)
+    for (int a = 0; a < 3; ++a)
+      framed.corner[k][a] = triangle.corner[k][a] - p.base[a];
+  each_tested<Triangle>(
+      p, n, [&](int i, int g) __attribute__((always_inline)) {
+        const Shear<VFloat> shear{load<VFloat>(p.shear[0] + i),
+                                  load<VFloat>(p.shear[1] + i),
+                                  load<VFloat>(p.shear[2] + i),
+                                  VFloat(p.frame_error)};
+        const VFloat t_min = load<VFloat>(p.t_min + i);
+        const VFloat best = load<VFloat>(p.best + i);
+        const float(*const corner)[3] = p.base ? framed.corner : triangle.corner;
+        const int axis = p.group_axis[g];
+        const auto found = [&]<bool kShareAxis>() __attribute__((always_inline)) {
+          const TriangleSource<kShareAxis> source{p, triangle, corner, i, axis, id};
+          return intersect_triangle(source, shear, t_min, best);
+        };
+        record<kAny, Triangle>(
+            p,
+            i,
+            axis >= 0 ? found.template operator()<true>() : found.template operator()<false>(),
+            id,
+            triangle);
+      });
+}
+
+/// Fields of the primitives i as tests read them.
+template <class Shape>
+[[gnu::always_inline]] inline typename Shape::template Fields<VFloat> fields_at(
+    const typename Shape::Arrays& all, const VUint& i) {
+  if constexpr (Shape::kKind == PrimitiveKind::kTriangle) {
+    Triangle::Fields<VFloat> to;
+    for (int k = 0; k < 3; ++k) {
+      const VUint vertex = words_at(all.corner[k], i);
+      for (int a = 0; a < 3; ++a)
+        to.corner[k][a] = floats_at(all.vertex[a], vertex);
+    }
+    return to;
+  } else {
+    return gathered<Shape, VFloat>(all.fields, i);
+  }
+}
+
+/// The same of the rays from i on: what their packet kept, where it kept all.
+template <class Shape>
+[[gnu::always_inline]] inline typename Shape::template Fields<VFloat> hit_fields(
+    const Packet& p, int i, unsigned lanes, const typename Shape::Arrays& all, const VUint& index) {
+  if constexpr (kKeepsFields<Shape>) {
+    const VUint met =
+        load_words<VFloat>(reinterpret_cast<const std::uint32_t*>(p.hit_field_id + i));
+    if ((lanes & ~bits_where(met == ids_at(p, i))) == 0) [[likely]] {
+      typename Shape::template Fields<VFloat> to;
+      int row = 0;
+      Shape::for_each_field([&](VFloat& x) { x = load<VFloat>(p.hit_field[row++] + i); }, to);
+      return to;
+    }
+  }
+  return fields_at<Shape>(all, index);
+}
+
+/// Spans of t, part after part; NaN where double does not tell.
+template <class Shape, int k = 0>
+[[gnu::always_inline]] inline void hit_spans(const Packet& p,
+                                             int i,
+                                             const SimdRays<VFloat>& rays,
+                                             const typename Shape::template Fields<VFloat>& met,
+                                             VDouble (&lo)[kWideParts<VFloat>],
+                                             VDouble (&hi)[kWideParts<VFloat>]) {
+  using W = VDouble;
+  const W unknown(__builtin_nan(""));
+  if constexpr (Shape::kKind == PrimitiveKind::kTriangle) {
+    const auto& c = met.corner;
+    const TriangleVertices<W> corner{
+        to_double<k>(vec(c[0])), to_double<k>(vec(c[1])), to_double<k>(vec(c[2]))};
+    const PlaneSpan<W> span = plane_span<W>(to_double<k>(rays.org), to_double<k>(rays.dir), corner);
+    lo[k] = select(span.known, span.lo, unknown);
+    hi[k] = span.hi;
+  } else {
+    const HitInterval<W> found = [&]() __attribute__((always_inline)) {
+      const auto wide = given_in_double<k>(rays);
+      const auto primitive = fields_to_double<Shape, k, VFloat>(met);
+      if constexpr (Shape::kKind == PrimitiveKind::kSphere) {
+        const int at = i + k * kWidth<W>;
+        return narrowed(wide, primitive, take<W>(p.low + at), take<W>(p.best + at));
+      } else {
+        return bound(wide, primitive, W(static_cast<double>(kInfinity)));
+      }
+    }
+    ();
+    lo[k] = select(found.sure, found.lo, unknown);
+    hi[k] = found.hi;
+  }
+  if constexpr (k + 1 < kWideParts<VFloat>)
+    hit_spans<Shape, k + 1>(p, i, rays, met, lo, hi);
+}
+
+/// A ray of a packet, with t counted as the caller does.
+inline ExactRay given_ray(const Packet& p, int i) {
+  const ExactRay ray = p.given.ray(i);
+  return p.has_units ? ray.in_units_of(1 / static_cast<double>(p.unit[i])) : ray;
+}
+
+/// t of the rays of a packet from i on that hit primitives of the kinds of a set, to t[0] and on;
+/// that of others stays.
+template <class Set>
+inline void round_hits(const Packet& p, int i, float* t) {
+  const GeometryView& g = *p.geometry;
+  const VUint id = ids_at(p, i);
+  Set::for_each([&]<class Shape>() __attribute__((always_inline)) {
+    const std::uint32_t first = g.ids.begin(Shape::kKind);
+    const auto here = id - first < g.ids.count(Shape::kKind);
+    const unsigned lanes = bits_where(here);
+    if (lanes == 0)
+      return;
+    const VUint index(here ? id - first : VUint{});
+    VDouble lo[kWideParts<VFloat>], hi[kWideParts<VFloat>];
+    hit_spans<Shape>(
+        p, i, simd_rays(p, i), hit_fields<Shape>(p, i, lanes, g.of<Shape>(), index), lo, hi);
+    if (p.has_units) [[unlikely]]
+      for (int k = 0; k < kWideParts<VFloat>; ++k) {
+        const auto unit = take<VDouble>(p.unit + i + k * kWidth<VDouble>);
+        lo[k] = lo[k] / unit;
+        hi[k] = hi[k] / unit;
+      }
+    const VFloat least = narrow<VFloat>(lo) + VFloat(0);  // no zero is -0
+    const unsigned known = bits(least == narrow<VFloat>(hi));
+    store(t, select(mask_of(VUint(here)), least, load<VFloat>(t)));
+    each_bit(lanes & ~known,
+             [&](int k) { t[k] = rounded_t(g, given_ray(p, i + k), id_of(p.id[i + k])); });
+  });
 }
 
 }  // namespace grelha::GRELHA_ISA

@@ -2,7 +2,7 @@
 // Checks the guarantees of frustum.hpp ray by ray: follows each ray in long double through the
 // slices that the frustum covers, and compares it with the frustum's sides and planes.
 
-#include "kernel/traverse/packet_traversal.hpp"
+#include "kernel/traverse/packet_walk.hpp"
 #include "tests/lanes/lane_functions.hpp"
 
 namespace grelha::GRELHA_ISA {
