@@ -6,7 +6,7 @@
 
 #include <omp.h>
 
-#include "kernel/grid/world_impl.hpp"
+#include "kernel/world/world_impl.hpp"
 
 namespace grelha::perf {
 namespace {

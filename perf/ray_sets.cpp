@@ -9,11 +9,11 @@
 #include <random>
 
 #include "frontend/input/effects.hpp"
-#include "kernel/scene/frame.hpp"
+#include "kernel/scene/shading_view.hpp"
 #include "kernel/shade/strip.hpp"
 #include "kernel/shade/sampling.hpp"
 #include "kernel/shapes/surface.hpp"
-#include "kernel/grid/world_impl.hpp"
+#include "kernel/world/world_impl.hpp"
 
 namespace grelha::perf {
 

@@ -8,8 +8,8 @@
 #include <stdexcept>
 
 #include "frontend/input/read_scene.hpp"
-#include "kernel/scene/frame.hpp"
-#include "kernel/grid/world_impl.hpp"
+#include "kernel/scene/shading_view.hpp"
+#include "kernel/world/world_impl.hpp"
 #include "scenes/generators.hpp"
 
 #include <unistd.h>

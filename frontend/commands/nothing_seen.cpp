@@ -7,7 +7,7 @@
 
 #include "grelha/render.hpp"
 #include "grelha/scene_spans.hpp"
-#include "kernel/scene/light_unit.hpp"
+#include "kernel/scene/shading_view.hpp"
 
 namespace grelha {
 namespace {

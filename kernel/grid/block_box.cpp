@@ -1,9 +1,8 @@
-#include "kernel/grid/block_box.hpp"
+#include "kernel/grid/grid_steps.hpp"
 
 #include <algorithm>
 #include <limits>
 
-#include "kernel/grid/box_allocator.hpp"
 #include "kernel/shapes/rounding.hpp"
 
 namespace grelha {

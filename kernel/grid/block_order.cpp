@@ -1,4 +1,4 @@
-#include "kernel/grid/block_order.hpp"
+#include "kernel/grid/grid_steps.hpp"
 
 #include <algorithm>
 #include <numeric>

@@ -1,9 +1,7 @@
-#include "kernel/grid/clusters.hpp"
+#include "kernel/grid/plan.hpp"
 
 #include <algorithm>
 #include <cmath>
-
-#include "kernel/grid/grid_layout.hpp"
 
 namespace grelha {
 namespace {

@@ -1,4 +1,4 @@
-#include "kernel/grid/grid_fill.hpp"
+#include "kernel/grid/plan.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,17 +7,11 @@
 #include <stdexcept>
 #include <utility>
 
-#include "kernel/grid/block_box.hpp"
-#include "kernel/grid/block_order.hpp"
-#include "kernel/grid/box_allocator.hpp"
-#include "kernel/grid/bucket_pairs.hpp"
-#include "kernel/grid/build_progress.hpp"
+#include "kernel/grid/grid_steps.hpp"
 #include "kernel/grid/cell_finder.hpp"
 #include "kernel/grid/distance_field.hpp"
-#include "kernel/grid/grid_layout.hpp"
-#include "kernel/grid/level_builder.hpp"
 #include "kernel/base/parallel_for.hpp"
-#include "kernel/shapes/duplicates.hpp"
+#include "kernel/shapes/primitives.hpp"
 
 // A store is filled in three passes, each shared among threads that write to places of their own:
 // - emit: a chunk of primitives becomes pairs (cell, id), sorted by bucket, a run of neighbouring

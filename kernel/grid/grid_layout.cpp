@@ -1,4 +1,4 @@
-#include "kernel/grid/grid_layout.hpp"
+#include "kernel/grid/plan.hpp"
 
 #include <algorithm>
 #include <array>

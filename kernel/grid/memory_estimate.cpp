@@ -1,4 +1,4 @@
-#include "kernel/grid/memory_estimate.hpp"
+#include "kernel/grid/plan.hpp"
 
 #include <algorithm>
 #include <array>

@@ -10,8 +10,6 @@
 
 #include <omp.h>
 
-#include "kernel/grid/clusters.hpp"
-#include "kernel/grid/grid_layout.hpp"
 #include "kernel/base/pages.hpp"
 
 namespace grelha {

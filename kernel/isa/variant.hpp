@@ -3,7 +3,6 @@
 // once per instruction set.
 
 #include "kernel/shade/strip.hpp"
-#include "kernel/query/collect.hpp"
 #include "kernel/query/loops.hpp"
 #include "kernel/query/nearest_search.hpp"
 #include "kernel/query/winding_sum.hpp"

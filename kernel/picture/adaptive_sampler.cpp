@@ -9,13 +9,12 @@
 
 #include <omp.h>
 
-#include "kernel/grid/world_impl.hpp"
+#include "kernel/world/world_impl.hpp"
 #include "kernel/picture/target_rays.hpp"
-#include "kernel/picture/error_check.hpp"
-#include "kernel/picture/block_errors.hpp"
 #include "kernel/picture/sampling_round.hpp"
+#include "kernel/picture/block_errors.hpp"
 #include "kernel/picture/tolerances.hpp"
-#include "kernel/shade/setup.hpp"
+#include "kernel/shade/strips.hpp"
 #include "kernel/shade/workspace.hpp"
 #include "kernel/base/pages.hpp"
 

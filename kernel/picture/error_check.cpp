@@ -1,4 +1,4 @@
-#include "kernel/picture/error_check.hpp"
+#include "kernel/picture/sampling_round.hpp"
 
 #include <algorithm>
 #include <cmath>

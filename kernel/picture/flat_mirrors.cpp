@@ -1,4 +1,4 @@
-#include "kernel/picture/flat_mirrors.hpp"
+#include "kernel/picture/target_rays.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "kernel/picture/mesh_parts.hpp"
+#include "kernel/picture/target_rays.hpp"
 
 #include <array>
 #include <bit>

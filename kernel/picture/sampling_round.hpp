@@ -6,9 +6,13 @@
 #include <cstdint>
 #include <vector>
 
+#include "grelha/render_options.hpp"
+#include "grelha/stats.hpp"
 #include "kernel/picture/block_errors.hpp"
 #include "kernel/picture/refinement.hpp"
 #include "kernel/scene/shading_view.hpp"
+#include "kernel/shade/strips.hpp"
+#include "kernel/world/world_impl.hpp"
 
 namespace grelha {
 
@@ -50,5 +54,17 @@ void add_run(Refinement& r, const PixelRun& run, const std::int64_t* sums, Chunk
 /// Adds the first `done` chunks of a round. Returns true if these were all; otherwise the blocks of
 /// the other chunks stay wanted.
 bool end_round(Refinement& r, const std::vector<Chunk>& chunks, std::size_t done);
+
+// A second opinion on a refined picture: some pixels once more, with other samples. Estimates that
+// decided where to stop cannot be wrong in the same way twice.
+
+/// Samples some pixels of a picture once more, by another sequence: others each time. The same for
+/// any number of threads. `stats` gets the rays, r.check_samples stays as it is.
+CheckSums check_error(const World::Impl& world,
+                      const Setup& setup,
+                      const RenderOptions& options,
+                      const BlockErrors& errors,
+                      const Refinement& r,
+                      RenderStats& stats);
 
 }  // namespace grelha

@@ -4,9 +4,6 @@
 #include <cmath>
 #include <memory>
 
-#include "kernel/picture/flat_mirrors.hpp"
-#include "kernel/picture/mesh_parts.hpp"
-#include "kernel/picture/to_picture.hpp"
 #include "kernel/picture/tolerances.hpp"
 #include "kernel/query/variants.hpp"
 #include "kernel/shade/pixel_box.hpp"

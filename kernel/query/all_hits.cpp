@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "kernel/query/lists.hpp"
-#include "kernel/query/ray_lists.hpp"
 #include "kernel/shapes/hit.hpp"
 
 namespace grelha {

@@ -2,9 +2,7 @@
 #include <vector>
 
 #include "grelha/all_hits.hpp"
-#include "kernel/query/facing.hpp"
 #include "kernel/query/lists.hpp"
-#include "kernel/query/ray_lists.hpp"
 #include "kernel/shapes/hit.hpp"
 
 namespace grelha {

@@ -5,13 +5,11 @@
 #include <mutex>
 #include <stdexcept>
 
-#include "kernel/query/filters.hpp"
+#include "kernel/query/streams.hpp"
 #include "kernel/query/variants.hpp"
-#include "kernel/query/options.hpp"
-#include "kernel/query/runs.hpp"
 #include "kernel/shapes/nearest.hpp"
 #include "kernel/shapes/surface.hpp"
-#include "kernel/grid/world_impl.hpp"
+#include "kernel/world/world_impl.hpp"
 
 namespace grelha {
 namespace {

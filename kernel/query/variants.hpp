@@ -11,7 +11,7 @@
 #include "kernel/scene/shading_view.hpp"
 #include "grelha/stats.hpp"
 #include "kernel/grid/view.hpp"
-#include "kernel/grid/winding_tree.hpp"
+#include "kernel/world/winding_tree.hpp"
 #include "kernel/traverse/candidates.hpp"
 
 namespace grelha {

@@ -5,7 +5,7 @@
 
 #include "grelha/coordinates.hpp"
 #include "kernel/base/sine.hpp"
-#include "kernel/scene/frame.hpp"
+#include "kernel/scene/shading_view.hpp"
 
 namespace grelha {
 namespace {

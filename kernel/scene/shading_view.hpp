@@ -3,12 +3,110 @@
 
 #include <cstdint>
 
-#include "kernel/scene/batch.hpp"
-#include "kernel/scene/frame.hpp"
-#include "kernel/scene/light_unit.hpp"
+#include "grelha/camera.hpp"
 #include "grelha/phase.hpp"
 
 namespace grelha {
+
+/// Sums of light are integers in units of 2^-32, so that they come out the same in whatever order
+/// terms arrive.
+inline constexpr double kLightUnit = 4294967296.0;
+/// Terms are clamped to kMostLight divided by the samples a pixel, and to kMostTerm: then 64 of the
+/// largest a sample still fit.
+inline constexpr float kMostLight = 33554432.f;
+inline constexpr float kMostTerm = 1048576.f;
+
+/// A camera's frame: direction of a point (x, y) of the image, in pixels = forward + (x - w/2)
+/// right + (h/2 - y) up. A ray through the point (a, b) of the unit disc of its lens starts at
+/// eye + a lens_right + b lens_up. It goes to the point of that direction at depth `focus`. Where
+/// rays are parallel, the same multiples of right and up move their origins instead.
+struct FrameView {
+  float eye[3] = {};
+  float forward[3] = {};
+  float right[3] = {};
+  float up[3] = {};
+  float lens_right[3] = {};
+  float lens_up[3] = {};
+  float focus = 1;
+  int width = 0;
+  int height = 0;
+  bool lens = false;
+  bool parallel = false;
+};
+
+/// The frame of a sound camera. Its tangent comes from a series of our own: libm's last bit depends
+/// on the machine.
+FrameView make_frame(const Camera& camera);
+
+inline constexpr int kBatch = 512;     ///< rays shaded together
+inline constexpr int kCacheLine = 16;  ///< floats
+/// Length of an array of a batch: a cache line more than a power of two. A cache keeps few lines
+/// whose addresses are equal modulo 4 KiB, and each hit writes to some thirty arrays side by side.
+/// With the odd line all these stay in the cache.
+inline constexpr int kBatchRow = kBatch + kCacheLine;
+/// Vectors of a batch, an array per component.
+struct Rows3 {
+  alignas(64) float x[kBatchRow], y[kBatchRow], z[kBatchRow];
+};
+
+/// The same for longer arrays that stand elsewhere.
+struct Columns3 {
+  float *x, *y, *z;
+};
+
+/// Set in the depth of a waiting ray that was refracted.
+inline constexpr std::uint32_t kRefracted = 1u << 31;
+
+/// Rays waiting for their turn, last in first out. Arrays of `capacity` each.
+struct RayStack {
+  Columns3 org, dir, weight;
+  float* share;  ///< only where keeps_shares()
+  std::uint32_t *pixel, *depth;
+  std::uint32_t *sample, *path;  ///< only when the plan is on
+  int size, capacity;
+};
+
+/// The rays.
+struct BatchRays {
+  Rows3 org, dir;
+  alignas(64) float t[kBatchRow];  ///< t of the hit, if its surface is computed from t
+  Rows3 weight;
+  alignas(64) float share[kBatchRow];
+  std::uint32_t id[kBatchRow], pixel[kBatchRow], depth[kBatchRow];
+  std::uint32_t sample[kBatchRow];  ///< of its pixel
+  std::uint32_t path[kBatchRow];    ///< which bounces led here (0: none)
+};
+
+/// The hits of the rays, without the misses.
+struct BatchHits {
+  Rows3 point;                          ///< on the surface
+  Rows3 normal;                         ///< geometric, unit, towards the viewer
+  Rows3 shading;                        ///< normal for shading, unit, towards the viewer
+  Rows3 viewer;                         ///< unit vector to it
+  alignas(64) float offset[kBatchRow];  ///< how far along the normal a ray must start so as not to
+                                        ///< hit its own surface
+  alignas(64) float inside[kBatchRow];  ///< 1: hit from within
+  Rows3 weight;                         ///< of the light from this point
+  alignas(64) float share[kBatchRow];   ///< see split()
+  std::uint32_t pixel[kBatchRow], depth[kBatchRow], material[kBatchRow];
+  std::uint32_t sample[kBatchRow], path[kBatchRow];
+  Rows3 color;  ///< of vertices, mixed: times diffuse and emission; only with ShadingView::colored
+};
+
+/// Shadow rays and the light each lets through.
+struct BatchShadows {
+  Rows3 org, dir;
+  Rows3 light;
+  std::uint32_t id[kBatchRow];  ///< a primitive in the way
+  std::uint32_t pixel[kBatchRow];
+};
+
+/// One thread's arrays for one batch; the caller allocates one a thread.
+struct Batch {
+  BatchRays rays;
+  BatchHits hits;
+  BatchShadows shadows;
+};
 
 enum MaterialField {
   kDiffuseR,

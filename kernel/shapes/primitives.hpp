@@ -1,7 +1,9 @@
 #pragma once
-// The primitives of a scene, as grids are built from them.
+// The primitives of a scene, and which of them are exact copies of others.
 
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "grelha/scene_spans.hpp"
 #include "kernel/shapes/shapes.hpp"
@@ -43,5 +45,13 @@ class Primitives {
  private:
   PerShape<SourceOf, Shapes> sources_;
 };
+
+/// Finds, among some finite primitives (ids ascending), the copies of another one with a lower id:
+/// the numbers that a test reads have the same bits. If two shapes have the same hash, a copy may
+/// be missed.
+std::vector<Copy> find_duplicates(const Primitives& p, std::span<const std::uint32_t> ids);
+
+/// The planes behind the last one that is no copy.
+std::vector<Copy> find_last_copies(const PlaneSpans& planes);
 
 }  // namespace grelha

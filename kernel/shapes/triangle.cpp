@@ -1,7 +1,5 @@
 #include "kernel/shapes/triangle.hpp"
 
-#include "kernel/shapes/axis_crossing.hpp"
-
 namespace grelha {
 
 bool Triangle::is_even(const TriangleSpans& spans) {
@@ -34,23 +32,6 @@ Triangle::Arrays Triangle::Source::arrays() const {
   put(out.normal, spans.nx, spans.ny, spans.nz);
   put(out.color, spans.red, spans.green, spans.blue);
   return out;
-}
-
-namespace {
-
-bool is_same_point(const float (&a)[3], const float (&b)[3]) {
-  return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
-}
-
-}  // namespace
-
-CrossingSpan triangle_span(const ExactRay& ray, const float (&corner)[3][3], double shift) {
-  // no area: many triangles of a mesh whose coordinates keep few digits
-  if (is_same_point(corner[0], corner[1]) || is_same_point(corner[1], corner[2]) ||
-      is_same_point(corner[2], corner[0]))
-    return {};
-  return scalar::refine_span(
-      bound_crossing(ray, corner), shift, [&] { return cross_triangle(ray, corner); });
 }
 
 }  // namespace grelha

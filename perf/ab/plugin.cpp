@@ -9,7 +9,7 @@
 #include "grelha/query.hpp"
 #include "grelha/scene_spans.hpp"
 #include "grelha/world.hpp"
-#include "kernel/grid/world_impl.hpp"
+#include "kernel/world/world_impl.hpp"
 #include "kernel/query/variants.hpp"
 
 namespace grelha::perf {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "kernel/grid/world_impl.hpp"
+#include "kernel/world/world_impl.hpp"
 #include "perf/trace/modes.hpp"
 #include "tests/reference/reference.hpp"
 #include "tests/support/oracle.hpp"

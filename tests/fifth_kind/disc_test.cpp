@@ -8,8 +8,8 @@
 #include <numeric>
 
 #include "grelha/grelha.hpp"
-#include "kernel/grid/world_impl.hpp"
-#include "kernel/shapes/duplicates.hpp"
+#include "kernel/world/world_impl.hpp"
+#include "kernel/shapes/primitives.hpp"
 #include "tests/support/one_hit.hpp"
 #include "tests/support/oracle.hpp"
 #include "tests/support/random.hpp"

@@ -5,7 +5,7 @@
 #define GRELHA_ISA scalar
 #endif
 #include "kernel/shapes/surface.hpp"
-#include "kernel/grid/world_impl.hpp"
+#include "kernel/world/world_impl.hpp"
 
 #include <cmath>
 

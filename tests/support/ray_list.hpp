@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "kernel/query/variants.hpp"
-#include "kernel/grid/world_impl.hpp"
+#include "kernel/world/world_impl.hpp"
 #include "tests/support/random.hpp"
 
 namespace grelha::test {

@@ -3,7 +3,7 @@
 #include <cstring>
 #include <span>
 
-#include "kernel/grid/world_impl.hpp"
+#include "kernel/world/world_impl.hpp"
 
 namespace grelha::test {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "kernel/grid/world_impl.hpp"
+#include "kernel/world/world_impl.hpp"
 #include "tests/support/scenes.hpp"
 
 namespace grelha::test {

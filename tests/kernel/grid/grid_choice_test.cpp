@@ -7,7 +7,7 @@
 #include <numeric>
 #include <set>
 
-#include "kernel/grid/block_order.hpp"
+#include "kernel/grid/grid_steps.hpp"
 #include "tests/support/grid_cases.hpp"
 
 namespace grelha::test {

@@ -1,13 +1,13 @@
 // Tests the guarantees of a built grid: valid rows, every primitive in each cell that its surface
 // overlaps, exact distances.
-#include "kernel/shapes/duplicates.hpp"
+#include "kernel/shapes/primitives.hpp"
 #include "kernel/grid/grid.hpp"
 
 #include <algorithm>
 #include <numeric>
 #include <set>
 
-#include "kernel/grid/block_order.hpp"
+#include "kernel/grid/grid_steps.hpp"
 #include "kernel/grid/distance_field.hpp"
 #include "tests/support/grid_cases.hpp"
 #include "tests/support/same_grids.hpp"

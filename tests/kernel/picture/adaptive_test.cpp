@@ -1,7 +1,7 @@
 // Adaptive supersampling with rays, against truths of geometry.
 #include <cstring>
 
-#include "kernel/picture/point_tracer.hpp"
+#include "kernel/picture/subdivision.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/recursion.hpp"
 #include "tests/support/scenes.hpp"

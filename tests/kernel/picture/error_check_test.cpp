@@ -1,11 +1,10 @@
 // A second set of samples: that it tells the error of the first, and of a picture that is wrong.
-#include "kernel/picture/error_check.hpp"
+#include "kernel/picture/sampling_round.hpp"
 
 #include <cmath>
 
 #include "frontend/input/read_scene.hpp"
 #include "kernel/picture/adaptive_sampler.hpp"
-#include "kernel/picture/sampling_round.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"
 

@@ -3,8 +3,7 @@
 #include <map>
 #include <set>
 
-#include "kernel/picture/subdivider.hpp"
-#include "kernel/picture/subdivision_state.hpp"
+#include "kernel/picture/subdivision.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/recursion.hpp"
 #include "tests/support/scenes.hpp"

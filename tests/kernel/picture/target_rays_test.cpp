@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "kernel/picture/mesh_parts.hpp"
 #include "kernel/shade/pixel_box.hpp"
 #include "tests/support/scenes.hpp"
 

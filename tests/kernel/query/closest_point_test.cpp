@@ -7,7 +7,7 @@
 
 #include <stdexcept>
 
-#include "kernel/grid/world_impl.hpp"
+#include "kernel/world/world_impl.hpp"
 #include "kernel/shapes/foot.hpp"
 #include "tests/support/brute_force.hpp"
 #include "tests/support/random.hpp"

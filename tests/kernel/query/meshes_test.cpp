@@ -12,7 +12,7 @@
 #include "grelha/inside.hpp"
 #include "grelha/mesh_check.hpp"
 #include "grelha/meshes.hpp"
-#include "kernel/grid/world_impl.hpp"
+#include "kernel/world/world_impl.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/same_grids.hpp"
 #include "tests/support/scenes.hpp"

@@ -7,7 +7,7 @@
 
 #include "grelha/distance.hpp"
 #include "grelha/inside.hpp"
-#include "kernel/query/solid_angle.hpp"
+#include "kernel/query/winding_sum.hpp"
 #include "kernel/query/variants.hpp"
 #include "tests/support/inside_cases.hpp"
 #include "tests/support/rational.hpp"

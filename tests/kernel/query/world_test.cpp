@@ -12,7 +12,7 @@
 #include "grelha/all_hits.hpp"
 #include "grelha/distance.hpp"
 #include "grelha/owning_world.hpp"
-#include "kernel/grid/world_impl.hpp"
+#include "kernel/world/world_impl.hpp"
 #include "tests/support/brute_force.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/same_grids.hpp"

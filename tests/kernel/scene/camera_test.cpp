@@ -5,7 +5,7 @@
 #include <memory>
 #include <numbers>
 
-#include "kernel/scene/frame.hpp"
+#include "kernel/scene/shading_view.hpp"
 #include "tests/support/oracle.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"

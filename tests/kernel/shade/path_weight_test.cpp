@@ -5,7 +5,7 @@
 
 #include "grelha/render.hpp"
 #include "kernel/query/variants.hpp"
-#include "kernel/grid/world_impl.hpp"
+#include "kernel/world/world_impl.hpp"
 #include "tests/support/scenes.hpp"
 
 #include <gtest/gtest.h>

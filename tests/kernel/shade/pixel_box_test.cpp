@@ -1,7 +1,7 @@
 // Parts of pixels that get half of the samples.
 #include "kernel/shade/pixel_box.hpp"
 
-#include "kernel/shade/setup.hpp"
+#include "kernel/shade/strips.hpp"
 #include "kernel/shade/workspace.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"

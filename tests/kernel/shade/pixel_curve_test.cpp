@@ -1,7 +1,7 @@
 // Runs of one sequence for the pixels of a picture: where each lies, and that errors of neighbours
 // make up for each other.
 #define GRELHA_ISA scalar
-#include "kernel/shade/pixel_curve.hpp"
+#include "kernel/shade/strips.hpp"
 
 #include <bit>
 #include <cmath>

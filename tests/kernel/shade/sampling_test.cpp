@@ -14,7 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "kernel/query/variants.hpp"
-#include "kernel/shade/pixel_curve.hpp"
+#include "kernel/shade/strips.hpp"
 #include "tests/lanes/lane_functions.hpp"
 #include "tests/support/rays.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "kernel/grid/world_impl.hpp"
+#include "kernel/world/world_impl.hpp"
 #include "tests/kernel/shade/look.hpp"
 
 namespace grelha::test {

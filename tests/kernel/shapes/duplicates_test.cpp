@@ -1,12 +1,12 @@
 // Exact copies of primitives are not tested, and nothing shows that they are not.
 #include "grelha/render.hpp"
-#include "kernel/shapes/duplicates.hpp"
+#include "kernel/shapes/primitives.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
-#include "kernel/grid/world_impl.hpp"
+#include "kernel/world/world_impl.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/scenes.hpp"
 
