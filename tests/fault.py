@@ -13,7 +13,7 @@ class Fault:
     simd: bool = False  # wants copies of more than one width
 
 
-def tolerance(name, room, constant, value, planted, test, cases):
-    """A constant of a room's tolerances set to what breaks its promise."""
-    return Fault(name, f"kernel/{room}/tolerances.hpp", f"{constant} = {value};",
+def tolerance(name, file, constant, value, planted, test, cases):
+    """A constant among the tolerances of a file of the kernel set to what breaks its promise."""
+    return Fault(name, f"kernel/{file}", f"{constant} = {value};",
                  f"{constant} = {planted};", test, cases)

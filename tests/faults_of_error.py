@@ -7,7 +7,7 @@ def refinement(name, file, old, new, cases):
 
 
 def adaptive(name, constant, value, planted, cases):
-    return tolerance(name, "picture", constant, value, planted, "picture", cases)
+    return tolerance(name, "picture/tolerances.hpp", constant, value, planted, "picture", cases)
 
 
 FAULTS = [

@@ -331,8 +331,8 @@ std::string_view completed(std::string_view found, std::span<const std::string_v
 }  // namespace
 
 std::string_view nearest(std::string_view word_found, std::span<const std::string_view> words) {
-  constexpr std::size_t kLongest = 64;  // longer words are noise, no typing errors
-  if (word_found.size() > kLongest)
+  constexpr std::size_t kMaxSquaredLength = 64;  // longer words are noise, no typing errors
+  if (word_found.size() > kMaxSquaredLength)
     return {};
   const std::string found = in_small_letters(word_found);
   std::string_view best;

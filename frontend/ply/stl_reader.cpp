@@ -229,8 +229,8 @@ void read_stl_binary(std::string_view bytes,
 
 /// No keyword has more letters; a string of so many needs no memory.
 std::string lower(std::string_view word) {
-  constexpr std::size_t kLongest = 15;
-  return in_small_letters(word.substr(0, kLongest));
+  constexpr std::size_t kMaxSquaredLength = 15;
+  return in_small_letters(word.substr(0, kMaxSquaredLength));
 }
 
 bool begins_comment(std::string_view word) {

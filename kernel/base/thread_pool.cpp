@@ -15,10 +15,10 @@ namespace {
 std::atomic<int> more_follow = 0;
 
 /// A thread that sleeps until it is asked.
-class Member {
+class Worker {
  public:
   /// Throws std::system_error when there can be no more threads.
-  Member() {
+  Worker() {
     std::thread([this] { serve(); }).detach();
   }
 
@@ -73,12 +73,12 @@ class Member {
 };
 
 /// All threads that there are, lent to whoever asks.
-class Members {
+class WorkerPool {
  public:
   /// Up to so many; fewer when there can be no more threads.
-  std::vector<Member*> lend(int count) {
+  std::vector<Worker*> lend(int count) {
     const std::lock_guard lock(mutex_);
-    std::vector<Member*> lent;
+    std::vector<Worker*> lent;
     lent.reserve(static_cast<std::size_t>(count));
     while (static_cast<int>(lent.size()) < count && (!idle_.empty() || add())) {
       lent.push_back(idle_.back());
@@ -86,7 +86,7 @@ class Members {
     }
     return lent;
   }
-  void take_back(const std::vector<Member*>& lent) {
+  void take_back(const std::vector<Worker*>& lent) {
     const std::lock_guard lock(mutex_);
     idle_.insert(idle_.end(), lent.begin(), lent.end());
   }
@@ -95,7 +95,7 @@ class Members {
   /// A member is never destroyed: its thread serves on.
   bool add() try {
     idle_.reserve(count_ + 1);  // now, so that none that is there finds no place
-    idle_.push_back(new Member);
+    idle_.push_back(new Worker);
     ++count_;
     return true;
   } catch (const std::system_error&) {
@@ -106,45 +106,45 @@ class Members {
 
   std::mutex mutex_;
   std::size_t count_ = 0;
-  std::vector<Member*> idle_;
+  std::vector<Worker*> idle_;
 };
 
-Members* all_members = nullptr;
+WorkerPool* the_pool = nullptr;
 
 /// Forgets the parent's threads, which do not exist in a forked process.
 void forget_members() {
-  all_members = new Members;
+  the_pool = new WorkerPool;
 }
 
 /// Never destroyed: the threads sleep on while the program ends.
-Members& members() {
+WorkerPool& pool() {
   static const int registered = [] {
     forget_members();
     return pthread_atfork(nullptr, nullptr, forget_members);
   }();
   static_cast<void>(registered);
-  return *all_members;
+  return *the_pool;
 }
 
 }  // namespace
 
-KeepThreadsAwake::KeepThreadsAwake() {
+SpinWaitScope::SpinWaitScope() {
   ++more_follow;
 }
-KeepThreadsAwake::~KeepThreadsAwake() {
+SpinWaitScope::~SpinWaitScope() {
   --more_follow;
 }
 
 void by_threads(int threads, const std::function<void()>& work) {
   if (threads < 2)
     return work();
-  const std::vector<Member*> lent = members().lend(threads - 1);
-  for (Member* const m : lent)
+  const std::vector<Worker*> lent = pool().lend(threads - 1);
+  for (Worker* const m : lent)
     m->ask(work);
   work();
-  for (Member* const m : lent)
+  for (Worker* const m : lent)
     m->dismiss();
-  members().take_back(lent);
+  pool().take_back(lent);
 }
 
 }  // namespace grelha

@@ -16,11 +16,11 @@ void by_threads(int threads, const std::function<void()>& work);
 
 /// Says that stretches of work follow each other: while such an object exists, threads stay awake
 /// for a while after each. Otherwise they sleep, and leave their cores to others.
-class KeepThreadsAwake {
+class SpinWaitScope {
  public:
-  KeepThreadsAwake();
-  ~KeepThreadsAwake();
-  KeepThreadsAwake(const KeepThreadsAwake&) = delete;
+  SpinWaitScope();
+  ~SpinWaitScope();
+  SpinWaitScope(const SpinWaitScope&) = delete;
 };
 
 }  // namespace grelha

@@ -1,6 +1,6 @@
 #pragma once
-// Steps of building a grid: pairs of cells and primitives, blocks of triangles and their boxes, levels
-// of boxes.
+// Steps of building a grid: pairs of cells and primitives, blocks of triangles and their boxes,
+// levels of boxes.
 
 #include <algorithm>
 #include <array>

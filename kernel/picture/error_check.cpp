@@ -26,7 +26,7 @@ constexpr std::size_t kPixelsOfTurn = 64;
 /// A pixel that is sampled again.
 struct CheckedPixel {
   std::uint32_t pixel, block;
-  double stands_for;  ///< so many pixels
+  double weight;  ///< so many pixels
   std::int64_t sums[3] = {};
 };
 
@@ -89,10 +89,10 @@ std::vector<CheckedPixel> checked_pixels(const Refinement& r,
       of_worst += in_block;
   }
   for (const CheckedPixel& a : checked)
-    others += a.stands_for == 0;
+    others += a.weight == 0;
   for (CheckedPixel& a : checked)
-    if (a.stands_for == 0)
-      a.stands_for = (pixels_of(r) - static_cast<double>(of_worst)) / static_cast<double>(others);
+    if (a.weight == 0)
+      a.weight = (pixels_of(r) - static_cast<double>(of_worst)) / static_cast<double>(others);
   return checked;
 }
 
@@ -200,15 +200,15 @@ CheckSums check_error(const World::Impl& world,
   checker.sample(pixels);
   CheckSums sums;
   for (const CheckedPixel& a : pixels) {
-    const double y = a.stands_for * checker.half_square(a);
+    const double y = a.weight * checker.half_square(a);
     if (errors.agrees(a.block)) {
       const double ny = sample_count(r, a.block) * y;
       sums.ny += ny;
       sums.nyny += ny * ny;
-      sums.count += a.stands_for;
+      sums.count += a.weight;
       continue;
     }
-    const double x = a.stands_for * static_cast<double>(errors.claim(a.block));
+    const double x = a.weight * static_cast<double>(errors.claim(a.block));
     sums.y += y;
     sums.x += x;
     sums.yy += y * y;

@@ -69,7 +69,7 @@ void merge_vertices(const TriangleSpans& t, Sets& sets) {
 
 /// A piece that grows: from the vertex farthest from its first one to the farthest from that.
 struct MeshPart {
-  Rod rod;
+  Capsule capsule;
   double most = -1;
   std::uint32_t triangles = 0, seen = 0;
 
@@ -80,10 +80,10 @@ struct MeshPart {
     }
   }
   void grow_radius(const Point3& p) {
-    const Point3 along = rod.end[1] - rod.end[0], c = cross(along, p - rod.end[0]);
+    const Point3 along = capsule.end[1] - capsule.end[0], c = cross(along, p - capsule.end[0]);
     const double length = dot(along, along);
     if (length > 0)
-      rod.radius = std::max(rod.radius, std::sqrt(dot(c, c) / length));
+      capsule.radius = std::max(capsule.radius, std::sqrt(dot(c, c) / length));
   }
 };
 
@@ -104,23 +104,23 @@ class MeshParts {
     }
   }
 
-  std::vector<Rod> rods() {
+  std::vector<Capsule> capsules() {
     std::vector<Point3> first;
     for (const MeshPart& part : parts_)
-      first.push_back(part.rod.end[0]);
+      first.push_back(part.capsule.end[0]);
     each_vertex([&](MeshPart& part, std::size_t k, const Point3& p) {
-      part.stretch_from(first[k], p, part.rod.end[0]);
+      part.stretch_from(first[k], p, part.capsule.end[0]);
     });
     for (MeshPart& part : parts_)
       part.most = -1;
     each_vertex([](MeshPart& part, std::size_t, const Point3& p) {
-      part.stretch_from(part.rod.end[0], p, part.rod.end[1]);
+      part.stretch_from(part.capsule.end[0], p, part.capsule.end[1]);
     });
     each_vertex([](MeshPart& part, std::size_t, const Point3& p) { part.grow_radius(p); });
-    std::vector<Rod> rods;
+    std::vector<Capsule> capsules;
     for (const MeshPart& part : parts_)
-      rods.push_back(part.rod);
-    return rods;
+      capsules.push_back(part.capsule);
+    return capsules;
   }
 
  private:
@@ -143,13 +143,13 @@ class MeshParts {
 
 }  // namespace
 
-std::vector<Rod> mesh_parts(const TriangleSpans& triangles) {
+std::vector<Capsule> mesh_parts(const TriangleSpans& triangles) {
   Sets sets(triangles.vertex_count());
   for (std::size_t i = 0; i < triangles.size(); ++i)
     for (const std::uint32_t v : vertices_of(triangles, i))
       sets.join(triangles.a[i], v);
   merge_vertices(triangles, sets);
-  return MeshParts(triangles, sets).rods();
+  return MeshParts(triangles, sets).capsules();
 }
 
 }  // namespace grelha

@@ -13,15 +13,15 @@ namespace grelha {
 namespace {
 
 constexpr double kThin = 1;         ///< pixels: samples of a net hit everything wider
-constexpr double kMostParts = 256;  ///< parts of a rod
+constexpr double kMostParts = 256;  ///< parts of a capsule
 constexpr int kMostClear = 6;       ///< transparent surfaces on the way to a thing
 constexpr double kMostBlur = .25;   ///< pixels: a box holds too little of a thing with more blur
 constexpr double kBoxTaken = .9 * static_cast<double>(kLargestBox);  ///< sides are rounded up
 constexpr double kMargin = .02;  ///< pixels around a box, for rounding
 constexpr std::size_t kRaysOfTurn = 256;
 
-/// A part of a rod, the target of one ray.
-struct Target : Rod {
+/// A part of a capsule, the target of one ray.
+struct Target : Capsule {
   bool hits_target = false;
 
   Point3 middle() const {
@@ -32,14 +32,14 @@ struct Target : Rod {
   }
 };
 
-std::vector<Rod> rods_of(const World::Impl& world) {
+std::vector<Capsule> capsules_of(const World::Impl& world) {
   const GeometrySpans& g = world.primitives.geometry;
-  std::vector<Rod> rods = mesh_parts(g.triangles);
+  std::vector<Capsule> capsules = mesh_parts(g.triangles);
   for (std::size_t i = 0; i < g.spheres.size(); ++i)
-    rods.push_back(rod_of(g.spheres, i));
+    capsules.push_back(capsule_of(g.spheres, i));
   for (std::size_t i = 0; i < g.cones.size(); ++i)
-    rods.push_back(rod_of(g.cones, i));
-  return rods;
+    capsules.push_back(capsule_of(g.cones, i));
+  return capsules;
 }
 
 /// Rays of one turn, from one point each.
@@ -56,9 +56,9 @@ struct TargetRays {
   }
 };
 
-class Targeting {
+class TargetSearch {
  public:
-  Targeting(
+  TargetSearch(
       const World::Impl& world, const Setup& setup, int threads, Refinement& r, TraceCounts& n)
       : world_(world),
         setup_(setup),
@@ -66,10 +66,11 @@ class Targeting {
         to_(setup.frame),
         r_(r),
         counts_(n),
-        rods_(rods_of(world)) {}
+        capsules_(capsules_of(world)) {}
 
   void run() {
-    std::vector<Target> targets = targets_from_camera([](const Rod& rod) { return rod; });
+    std::vector<Target> targets =
+        targets_from_camera([](const Capsule& capsule) { return capsule; });
     each_turn_of(targets,
                  [&](TargetRays& rays, std::size_t first, std::size_t count, TraceCounts& n) {
                    look(rays, targets.data() + first, count, n);
@@ -82,9 +83,9 @@ class Targeting {
     const ShadingView& shading = setup_.shading;
     for (int l = 0; !shading.area && l < shading.light_count; ++l) {
       const float* const at = shading.lights + kLightFloats * l;
-      if (left < rods_.size())
+      if (left < capsules_.size())
         break;
-      left -= rods_.size();
+      left -= capsules_.size();
       throw_shadows({{at[0], at[1], at[2]}});
     }
   }
@@ -117,33 +118,33 @@ class Targeting {
     return std::abs(ratio - 1) * std::sqrt(dot(right, right)) / to_.pixel(focus);
   }
 
-  static double parts_of(const Rod& rod, double step) {
-    return std::clamp(std::ceil(rod.length() / step), 1., kMostParts);
+  static double parts_of(const Capsule& capsule, double step) {
+    return std::clamp(std::ceil(capsule.length() / step), 1., kMostParts);
   }
-  static void add_parts(const Rod& rod, double step, std::vector<Target>& targets) {
-    const double parts = parts_of(rod, step);
+  static void add_parts(const Capsule& capsule, double step, std::vector<Target>& targets) {
+    const double parts = parts_of(capsule, step);
     for (double k = 0; k < parts; ++k) {
-      Target target{rod};
+      Target target{capsule};
       for (std::size_t e = 0; e < 2; ++e)
         for (std::size_t a = 0; a < 3; ++a)
-          target.end[e][a] = rod.end[0][a] +
-                             (k + static_cast<double>(e)) / parts * (rod.end[1][a] - rod.end[0][a]);
+          target.end[e][a] = capsule.end[0][a] + (k + static_cast<double>(e)) / parts *
+                                                     (capsule.end[1][a] - capsule.end[0][a]);
       targets.push_back(target);
     }
   }
 
-  /// A rod that looks thin, and how wide a pixel is there.
-  struct Thin {
-    Rod rod;
+  /// A capsule that looks thin, and how wide a pixel is there.
+  struct ThinCapsule {
+    Capsule capsule;
     double pixel;
   };
 
   /// Parts a pixel long; longer ones where there would be more than pixels of the picture.
-  std::vector<Target> parts_of(const std::vector<Thin>& thin) const {
+  std::vector<Target> parts_of(const std::vector<ThinCapsule>& thin) const {
     const auto count = [&](double pixels) {
       double sum = 0;
-      for (const Thin& t : thin)
-        sum += parts_of(t.rod, pixels * t.pixel);
+      for (const ThinCapsule& t : thin)
+        sum += parts_of(t.capsule, pixels * t.pixel);
       return sum;
     };
     const auto most = static_cast<double>(r_.box.size());
@@ -151,22 +152,23 @@ class Targeting {
     while (pixels < kMostParts && count(pixels) > most)
       pixels *= 2;
     std::vector<Target> targets;
-    for (const Thin& t : thin)
-      add_parts(t.rod, pixels * t.pixel, targets);
+    for (const ThinCapsule& t : thin)
+      add_parts(t.capsule, pixels * t.pixel, targets);
     return targets;
   }
 
-  /// At where rods seem to be.
+  /// At where capsules seem to be.
   template <class Place>
   std::vector<Target> targets_from_camera(const Place& place) const {
-    std::vector<Thin> thin;
-    for (const Rod& real : rods_) {
-      Rod rod = place(real);
-      if (!cut_behind(to_, rod))
+    std::vector<ThinCapsule> thin;
+    for (const Capsule& real : capsules_) {
+      Capsule capsule = place(real);
+      if (!cut_behind(to_, capsule))
         continue;
-      const double pixel = to_.pixel(std::min(to_(rod.end[0]).depth, to_(rod.end[1]).depth));
-      if (2 * rod.radius < kThin * pixel)
-        thin.push_back({rod, pixel});
+      const double pixel =
+          to_.pixel(std::min(to_(capsule.end[0]).depth, to_(capsule.end[1]).depth));
+      if (2 * capsule.radius < kThin * pixel)
+        thin.push_back({capsule, pixel});
     }
     return parts_of(thin);
   }
@@ -219,12 +221,12 @@ class Targeting {
       targets[i].hits_target = !before(i);
   }
 
-  /// Marks where thin rods show in a mirror.
+  /// Marks where thin capsules show in a mirror.
   void look_into(const MirrorPlane& mirror) {
-    std::vector<Target> targets = targets_from_camera([&](Rod rod) {
-      for (Point3& end : rod.end)
+    std::vector<Target> targets = targets_from_camera([&](Capsule capsule) {
+      for (Point3& end : capsule.end)
         end = mirror.image(end);
-      return rod;
+      return capsule;
     });
     each_turn_of(targets,
                  [&](TargetRays& rays, std::size_t first, std::size_t count, TraceCounts& n) {
@@ -266,13 +268,13 @@ class Targeting {
     }
   }
 
-  /// Marks where shadows of thin rods fall, if the eye sees that.
+  /// Marks where shadows of thin capsules fall, if the eye sees that.
   void throw_shadows(const Point3& light) {
-    std::vector<Thin> thin;
-    for (const Rod& rod : rods_)
-      if (const double pixel = to_.pixel(std::abs(to_(rod.end[0]).depth));
-          rod.radius < kThin * pixel)
-        thin.push_back({rod, pixel});
+    std::vector<ThinCapsule> thin;
+    for (const Capsule& capsule : capsules_)
+      if (const double pixel = to_.pixel(std::abs(to_(capsule.end[0]).depth));
+          capsule.radius < kThin * pixel)
+        thin.push_back({capsule, pixel});
     std::vector<Target> targets = parts_of(thin);
     each_turn_of(targets,
                  [&](TargetRays& rays, std::size_t first, std::size_t count, TraceCounts& n) {
@@ -377,7 +379,7 @@ class Targeting {
   const ToPicture to_;
   Refinement& r_;
   TraceCounts& counts_;
-  const std::vector<Rod> rods_;
+  const std::vector<Capsule> capsules_;
 };
 
 }  // namespace
@@ -389,7 +391,7 @@ std::size_t object_count(const World::Impl& world) {
 
 void target_small_objects(
     const World::Impl& world, const Setup& setup, int threads, Refinement& r, TraceCounts& counts) {
-  Targeting(world, setup, threads, r, counts).run();
+  TargetSearch(world, setup, threads, r, counts).run();
 }
 
 }  // namespace grelha

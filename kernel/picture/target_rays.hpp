@@ -32,7 +32,7 @@ inline Point3 cross(const Point3& a, const Point3& b) {
 }
 
 /// All of a thing lies within `radius` of the stretch between its ends.
-struct Rod {
+struct Capsule {
   Point3 end[2];
   double radius;
   std::uint32_t material;
@@ -40,12 +40,12 @@ struct Rod {
   double length() const { return std::sqrt(dot(end[1] - end[0], end[1] - end[0])); }
 };
 
-inline Rod rod_of(const SphereSpans& s, std::size_t i) {
+inline Capsule capsule_of(const SphereSpans& s, std::size_t i) {
   const Point3 centre{{s.x[i], s.y[i], s.z[i]}};
   return {{centre, centre}, std::abs(static_cast<double>(s.radius[i])), s.material[i]};
 }
 
-inline Rod rod_of(const ConeSpans& c, std::size_t i) {
+inline Capsule capsule_of(const ConeSpans& c, std::size_t i) {
   return {{{{c.base_x[i], c.base_y[i], c.base_z[i]}}, {{c.apex_x[i], c.apex_y[i], c.apex_z[i]}}},
           std::max(std::abs(static_cast<double>(c.base_radius[i])),
                    std::abs(static_cast<double>(c.apex_radius[i]))),
@@ -78,7 +78,7 @@ bool is_smooth_mirror(const MaterialView& materials, std::uint32_t material);
 /// The connected pieces of triangles, in the order of their first ones. Triangles that share a
 /// vertex are connected, by its index or (for small pieces) by its coordinates. For a piece of many
 /// triangles, every so many tell where it lies.
-std::vector<Rod> mesh_parts(const TriangleSpans& triangles);
+std::vector<Capsule> mesh_parts(const TriangleSpans& triangles);
 
 // Projects points of a scene into its picture.
 
@@ -140,15 +140,16 @@ class ToPicture {
   double uu_ = 0;
 };
 
-/// Cuts off what of a rod lies behind the eye, or nearly so; false: nothing is left.
-inline bool cut_behind(const ToPicture& to, Rod& rod) {
-  const double z[2] = {to(rod.end[0]).depth, to(rod.end[1]).depth};
+/// Cuts off what of a capsule lies behind the eye, or nearly so; false: nothing is left.
+inline bool cut_behind(const ToPicture& to, Capsule& capsule) {
+  const double z[2] = {to(capsule.end[0]).depth, to(capsule.end[1]).depth};
   const double least = 1e-3 * std::max(z[0], z[1]);
   if (!(least > 0))
     return false;
   for (std::size_t k = 0; k < 2; ++k)
     for (std::size_t a = 0; z[k] < least && a < 3; ++a)
-      rod.end[k][a] += (least - z[k]) / (z[1 - k] - z[k]) * (rod.end[1 - k][a] - rod.end[k][a]);
+      capsule.end[k][a] +=
+          (least - z[k]) / (z[1 - k] - z[k]) * (capsule.end[1 - k][a] - capsule.end[k][a]);
   return true;
 }
 

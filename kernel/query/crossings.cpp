@@ -59,13 +59,13 @@ class CrossingList : public ListedRay {
 
   bool crosses(const Candidate& c) {
     return c.block &&
-           (c.sure > 0 || crosses_aside(scaled(), scalar::triangle_of(*c.block, c.index)));
+           (c.sure > 0 || crosses_perturbed(scaled(), scalar::triangle_of(*c.block, c.index)));
   }
 
   bool is_before(const CrossedTriangle& a, const CrossedTriangle& b) {
     if (a.hi < b.lo || b.hi < a.lo)
       return a.hi < b.lo;
-    const int order = order_beside(scaled(), corners(a).corner, corners(b).corner);
+    const int order = order_perturbed(scaled(), corners(a).corner, corners(b).corner);
     return order != 0 ? order < 0 : a.id < b.id;
   }
 

@@ -19,12 +19,12 @@
 
 namespace grelha {
 
-/// crosses_beside(), by doubles where they tell.
-inline bool crosses_aside(const ExactRay& ray, const Triangle::Fields<float>& triangle) {
+/// crosses_perturbed(), by doubles where they tell.
+inline bool crosses_perturbed(const ExactRay& ray, const Triangle::Fields<float>& triangle) {
   const scalar::HitInterval<double> bound = scalar::bound_triangle(ray, triangle.corner);
   if (!bound.some || bound.lo >= ray.t_max)
     return false;
-  return (bound.sure && bound.hi < ray.t_max) || crosses_beside(ray, triangle.corner);
+  return (bound.sure && bound.hi < ray.t_max) || crosses_perturbed(ray, triangle.corner);
 }
 
 /// Times a sum of the sizes of products: error of a normal times a direction in double, 8 u.
@@ -77,7 +77,7 @@ class ListedRay {
   const ExactRay& scaled() {
     if (!is_scaled_) {
       const scalar::Vec3<float> dir{ray_.dir.x, ray_.dir.y, ray_.dir.z};
-      const float unit = scalar::length_unit(dir);
+      const float unit = scalar::direction_scale(dir);
       const double by = unit;
       const float t_max = unit == 1 ? ray_.t_max : scalar::finite_end(unit, ray_.t_max);
       scaled_ = {{ray_.org.x, ray_.org.y, ray_.org.z},

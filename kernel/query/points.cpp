@@ -20,11 +20,11 @@ void prepare_insides(const World& world, InsideRule rule);
 
 /// Tells which points lie inside: inside[i] is 1 or 0. For runs of one thread, after
 /// prepare_insides().
-void find_insides(const Variant& variant,
-                  const World& world,
-                  std::span<const Float3> points,
-                  InsideRule rule,
-                  std::uint8_t* inside);
+void classify_points(const Variant& variant,
+                     const World& world,
+                     std::span<const Float3> points,
+                     InsideRule rule,
+                     std::uint8_t* inside);
 
 namespace {
 
@@ -92,7 +92,7 @@ Surroundings surroundings(const SceneView& scene,
       continue;
     }
     const Triangle::Fields<float> triangle = scalar::triangle_of(*c.block, c.index);
-    if (c.sure == 0 && !crosses_aside(ray, triangle))
+    if (c.sure == 0 && !crosses_perturbed(ray, triangle))
       continue;
     const int by = is_crossed_inwards(ray, triangle.corner) ? -1 : 1;
     found.outwards += by;
@@ -104,11 +104,11 @@ Surroundings surroundings(const SceneView& scene,
 
 }  // namespace
 
-void find_insides(const Variant& variant,
-                  const World& world,
-                  std::span<const Float3> points,
-                  InsideRule rule,
-                  std::uint8_t* inside) {
+void classify_points(const Variant& variant,
+                     const World& world,
+                     std::span<const Float3> points,
+                     InsideRule rule,
+                     std::uint8_t* inside) {
   const bool by_crossings = rule != InsideRule::kWinding;
   if (!by_crossings)
     variant.loops.sort_by_winding(winding_tree(world), points.data(), points.size(), inside);
@@ -153,7 +153,7 @@ void find_insides(const Variant& variant,
 bool contains(const World& world, Float3 point, InsideRule rule) {
   prepare_insides(world, rule);
   std::uint8_t inside = 0;
-  find_insides(best_variant(), world, {&point, 1}, rule, &inside);
+  classify_points(best_variant(), world, {&point, 1}, rule, &inside);
   return inside != 0;
 }
 
@@ -165,7 +165,7 @@ void contains(const World& world,
   const Variant& variant = choose_variant(options.isa);
   prepare_insides(world, options.inside);
   const auto work = [&](std::size_t first, std::size_t end) {
-    find_insides(
+    classify_points(
         variant, world, points.subspan(first, end - first), options.inside, &inside[first]);
   };
   each_run(points.size(), options, work, kPoints);
@@ -239,7 +239,7 @@ void signed_distances(const World& world,
     for (std::size_t i = first; i < end; i += std::size(found)) {
       const std::size_t count = std::min(std::size(found), end - i);
       variant.loops.closest_points(world.impl().view, &points[i], count, kAnyRadius, found);
-      find_insides(variant, world, points.subspan(i, count), options.inside, inside);
+      classify_points(variant, world, points.subspan(i, count), options.inside, inside);
       for (std::size_t k = 0; k < count; ++k)
         distances[i + k] = signed_by(inside[k] != 0, found[k].distance);
     }

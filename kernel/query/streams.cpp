@@ -220,29 +220,29 @@ void each_run(std::size_t count,
   std::atomic<std::size_t> next = 0;
   const auto take_runs = [&](std::size_t) {
     RunLength length(lengths);
-    std::size_t unsaid = 0;
+    std::size_t unreported = 0;
     Clock::time_point began = Clock::now();
-    Clock::time_point said = began;
+    Clock::time_point last_report = began;
     while (!progress.stopped()) {
       const std::size_t first = next.fetch_add(length.elements());
       if (first >= count)
         break;
       const std::size_t end = std::min(count, first + length.elements());
       work(first, end);
-      unsaid += end - first;
+      unreported += end - first;
       const Clock::time_point now = Clock::now();
       length.took(now - began);
       began = now;
-      if (now - said < kShort)
+      if (now - last_report < kShort)
         continue;
-      progress.add(std::exchange(unsaid, 0));
-      said = now;
+      progress.add(std::exchange(unreported, 0));
+      last_report = now;
     }
-    progress.add(unsaid);
+    progress.add(unreported);
   };
   const std::size_t useful = (count + kOneThread - 1) / kOneThread;
-  const std::size_t takers = std::min(static_cast<std::size_t>(threads), useful);
-  each_turn(takers, static_cast<int>(takers), take_runs);
+  const std::size_t workers = std::min(static_cast<std::size_t>(threads), useful);
+  each_turn(workers, static_cast<int>(workers), take_runs);
   progress.throw_if_stopped();
 }
 

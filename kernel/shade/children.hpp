@@ -55,13 +55,13 @@ template <class Real>
 }
 
 /// Contribution of a ray to its sample: a weight per channel, and its share, see split().
-struct Carried {
+struct CarriedWeight {
   VFloat3 weight;
   VFloat share;
 };
 
 /// Kind of a ray that leaves a hit, as set in its depth, and its number within a fan.
-struct Branch {
+struct RayKind {
   std::uint32_t kind = 0;  ///< kRefracted, or 0: reflected
   std::uint32_t number = 0;
 };
@@ -79,7 +79,7 @@ struct Branch {
 
 /// The samples of the selected hits i, i + 1, ..., and which bounces lead to where their rays go.
 [[gnu::always_inline]] inline void push_paths(
-    const Shader& s, RayStack& stack, int i, const CompressMask& selected, const Branch& branch) {
+    const Shader& s, RayStack& stack, int i, const CompressMask& selected, const RayKind& branch) {
   const SimdHits<false> at{i};
   const BatchHits& h = s.b.hits;
   const std::uint32_t use = branch.number + (branch.kind != 0 ? 0x10001u : 1u);
@@ -93,8 +93,8 @@ inline void push(const Shader& s,
                  int i,
                  const CompressMask& selected,
                  const VFloat3& dir,
-                 const Carried& carried,
-                 const Branch& branch) {
+                 const CarriedWeight& carried,
+                 const RayKind& branch) {
   const SimdHits<false> at{i};
   const BatchHits& h = s.b.hits;
   const int to = stack.size;
@@ -140,8 +140,8 @@ inline void split(const Shader& s,
                   int i,
                   const VFloat3& up,
                   const VFloat3& down,
-                  Carried& reflected,
-                  Carried& refracted) {
+                  CarriedWeight& reflected,
+                  CarriedWeight& refracted) {
   const VFloat3 w = load3(s.b.hits.weight, i);
   reflected.weight = w * up;
   refracted.weight = w * down;
@@ -256,7 +256,7 @@ inline Lobe lobe_of(const Shader& s,
 /// Ends the paths of the hits i, i + 1, ... with a bit in `sending` that are too long, or whose
 /// share is below `least`: they see the background. Returns those that go on.
 [[gnu::always_inline]] inline unsigned end_paths(
-    const Shader& s, int i, const Carried& carried, unsigned sending, const VFloat& least) {
+    const Shader& s, int i, const CarriedWeight& carried, unsigned sending, const VFloat& least) {
   const BatchHits& h = s.b.hits;
   const VUint last = VUint{} + static_cast<std::uint32_t>(s.work.depth);
   const unsigned longest = bits_where(load_words<VFloat>(h.depth + i) >= last);
@@ -272,7 +272,7 @@ inline Lobe lobe_of(const Shader& s,
                                             int i,
                                             const Lobe& lobe,
                                             const VFloat3& reflected,
-                                            const Carried& carried) {
+                                            const CarriedWeight& carried) {
   const int rays = s.work.plan.glossy_rays;
   for (int j = 0; j < rays && lobe.on_many.count() != 0; ++j) {
     const VFloat3 dir = lobe_directions(s, i, reflected, lobe.roughness, j, rays);
@@ -281,17 +281,17 @@ inline Lobe lobe_of(const Shader& s,
 }
 
 /// The hits i, i + 1, ... that send rays on, a bit each, and the weights and shares of these.
-struct Sending {
+struct OutgoingRays {
   unsigned mirrors, clears;
-  Carried up, down;
+  CarriedWeight up, down;
 };
 
 /// The rays that hits i, i + 1, ... send on before any path ends.
-[[gnu::always_inline]] inline Sending sending_of(const Shader& s,
-                                                 int i,
-                                                 int hits,
-                                                 const Bounce& bounce) {
-  Sending rays;
+[[gnu::always_inline]] inline OutgoingRays outgoing_rays(const Shader& s,
+                                                         int i,
+                                                         int hits,
+                                                         const Bounce& bounce) {
+  OutgoingRays rays;
   split(s, i, bounce.up, bounce.down, rays.up, rays.down);
   const unsigned in = first_bits(i, hits);
   rays.mirrors = bits(any_component(rays.up.weight)) & in;
@@ -308,10 +308,10 @@ inline void send_bounce(const Shader& s,
                         const Bounce& bounce,
                         const VFloat3& reflected,
                         const VFloat& least) {
-  const Sending rays = sending_of(s, i, hits, bounce);
+  const OutgoingRays rays = outgoing_rays(s, i, hits, bounce);
   if ((rays.mirrors | rays.clears) == 0)
     return;
-  const Carried& up = rays.up;
+  const CarriedWeight& up = rays.up;
   const unsigned mirrors = end_paths(s, i, up, rays.mirrors, least);
   const unsigned clears = end_paths(s, i, rays.down, rays.clears, least);
   const Lobe lobe = lobe_of(s, i, mirrors, reflected, up.weight, least);

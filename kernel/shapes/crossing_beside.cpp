@@ -34,7 +34,7 @@ int sign_beside(const ExactRay& ray, const Expansion& edge, const ExactVector& a
 
 }  // namespace
 
-bool crosses_beside(const ExactRay& ray, const float (&corner)[3][3]) {
+bool crosses_perturbed(const ExactRay& ray, const float (&corner)[3][3]) {
   ExactVector at[3];
   for (int i = 0; i < 3; ++i)
     at[i] = difference(corner[i], ray.org);
@@ -77,7 +77,7 @@ int compare(const Expansion& a, const Expansion& b, const Expansion& c, const Ex
 
 }  // namespace
 
-int order_beside(const ExactRay& ray, const float (&corner)[3][3], const float (&other)[3][3]) {
+int order_perturbed(const ExactRay& ray, const float (&corner)[3][3], const float (&other)[3][3]) {
   const TrianglePlane a(ray, corner);
   const TrianglePlane b(ray, other);
   if (const int order = compare(a.along, a.across, b.along, b.across); order != 0)

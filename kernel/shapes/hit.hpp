@@ -72,9 +72,9 @@ void crossing_weights(const ExactRay& ray, const float (&corner)[3][3], double (
 /// True if a ray that is moved aside by an infinitesimal amount crosses between t_min and t_max.
 /// Such a ray crosses no edge and no corner of a closed mesh, so its crossings are even in number
 /// outside and odd inside. Edelsbrunner & Mücke, "Simulation of Simplicity", 1990.
-bool crosses_beside(const ExactRay& ray, const float (&corner)[3][3]);
+bool crosses_perturbed(const ExactRay& ray, const float (&corner)[3][3]);
 /// The order in which that ray crosses two triangles: -1, 0 (at the same t, as in one plane) or 1.
-int order_beside(const ExactRay& ray, const float (&corner)[3][3], const float (&other)[3][3]);
+int order_perturbed(const ExactRay& ray, const float (&corner)[3][3], const float (&other)[3][3]);
 /// Where the line of a ray crosses the plane of a triangle; it must.
 ExactCrossing cross_plane_of(const ExactRay& ray, const float (&corner)[3][3]);
 /// True if a ray that crosses a triangle comes from the side from which its corners are
@@ -108,7 +108,7 @@ ExactCrossing cross_cone(const ExactRay& ray, const ExactCone& cone);
 namespace grelha::GRELHA_ISA {
 
 /// Rays as the caller gave them, for cases that tests cannot decide: element i of each array.
-struct GivenRays {
+struct CallerRays {
   const float* org[3] = {};
   const float* dir[3] = {};
   const float* t_min = nullptr;
@@ -138,7 +138,7 @@ struct SimdRays {
   Real error_bound;             ///< kFarError times the greatest distance to a primitive, or
                                 ///< infinity
   const float* base = nullptr;  ///< x, y, z; null: 0
-  const GivenRays* given = nullptr;
+  const CallerRays* given = nullptr;
   int first = 0;  ///< index of the first lane among those given
   int step = 0;   ///< 1: a ray a lane; 0: one in all
 
@@ -220,9 +220,9 @@ template <int i, class Real>
   const auto t_min = [&] {
     if (ray.given && ray.given->unit)
       return given(ray.given->unit) * given(ray.given->t_min);
-    return of([](const GivenRays& g) { return g.t_min; }, ray.t_min);
+    return of([](const CallerRays& g) { return g.t_min; }, ray.t_min);
   };
-  const auto origin = [](int axis) { return [axis](const GivenRays& g) { return g.org[axis]; }; };
+  const auto origin = [](int axis) { return [axis](const CallerRays& g) { return g.org[axis]; }; };
   const Vec3<W> dir = to_double<i>(ray.dir);
   const W inv_dd = W(1) / dot(dir, dir);
   return {.org = {of(origin(0), ray.org.x), of(origin(1), ray.org.y), of(origin(2), ray.org.z)},
@@ -366,10 +366,11 @@ namespace grelha::GRELHA_ISA {
 
 /// Replaces the selected lanes of crossings that floats found.
 template <class Shape, class Real>
-[[gnu::noinline, gnu::cold]] void settle(const SimdRays<Real>& ray,
-                                         const typename Shape::template Fields<Real>& primitive,
-                                         const Mask<Real>& selected,
-                                         HitInterval<Real>& found) {
+[[gnu::noinline, gnu::cold]] void refine_lanes(
+    const SimdRays<Real>& ray,
+    const typename Shape::template Fields<Real>& primitive,
+    const Mask<Real>& selected,
+    HitInterval<Real>& found) {
   using One = typename Shape::template Fields<float>;
   float field[sizeof(One) / sizeof(float)][kWidth<Real>];
   int count = 0;
@@ -393,7 +394,7 @@ template <class Shape, class Real>
   HitInterval<Real> found = bound(ray, primitive, best);
   const Mask<Real> unsure = and_not(found.some, found.sure);
   if (any(unsure)) [[unlikely]]
-    settle<Shape>(ray, primitive, unsure, found);
+    refine_lanes<Shape>(ray, primitive, unsure, found);
   return found;
 }
 

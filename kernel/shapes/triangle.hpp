@@ -391,7 +391,7 @@ template <class Real, class Source>
     found.some = and_not(found.some, past);
   }
   replace_selected(bits(selected), found, [&](int k) {
-    if (source.leaves_out(k))
+    if (source.is_filtered(k))
       return CrossingSpan{};
     float corner[3][3];
     source.take_vertices(k, corner);
@@ -476,7 +476,7 @@ struct TrianglePosition {
 
 /// Replaces the weights of lanes in which doubles cancel by exact ones.
 template <class Real>
-[[gnu::noinline, gnu::cold]] void settle_weights(const Vec3<Real>& org,
+[[gnu::noinline, gnu::cold]] void refine_weights(const Vec3<Real>& org,
                                                  const Vec3<Real>& dir,
                                                  const TriangleVertices<Real>& c,
                                                  unsigned lanes,
@@ -515,7 +515,7 @@ inline TrianglePosition<Real> triangle_position(const Real& axis,
       weights_at<Real>(turned(org), turned(dir), {turned(c.a), turned(c.b), turned(c.c)});
   constexpr unsigned kAll = (1u << kWidth<Real>)-1;
   if (const unsigned unsure = ~bits(sure) & kAll; unsure != 0) [[unlikely]]
-    settle_weights(org, dir, c, unsure, w);
+    refine_weights(org, dir, c, unsure, w);
   const Vec3<Real> e1 = c.b - c.a;
   const Vec3<Real> e2 = c.c - c.a;
   return {

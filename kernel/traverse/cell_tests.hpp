@@ -90,7 +90,7 @@ struct BlockSource {
   float frame_error() const { return r.rays.frame_error; }
   ExactRay given(int) const { return r.rays.given.ray(r.i); }
   double shift(int) const { return r.rays.given.shift_of(r.i); }
-  bool leaves_out(int k) const { return r.rays.leaves_out(r.i, block->id[i + k]); }
+  bool is_filtered(int k) const { return r.rays.is_filtered(r.i, block->id[i + k]); }
   void take_vertices(int k, float (&to)[3][3]) const {
     for (int a = 0; a < 3; ++a) {
       to[0][a] = block->a[a][i + k];
@@ -417,8 +417,8 @@ class PairTests {
     float frame_error() const { return tests->p_.frame_error; }
     ExactRay given(int k) const { return tests->p_.given.ray(tests->ray(pair(k))); }
     double shift(int k) const { return tests->p_.given.shift_of(tests->ray(pair(k))); }
-    bool leaves_out(int k) const {
-      return tests->p_.leaves_out(tests->ray(pair(k)), tests->id(pair(k)));
+    bool is_filtered(int k) const {
+      return tests->p_.is_filtered(tests->ray(pair(k)), tests->id(pair(k)));
     }
     void take_vertices(int k, float (&to)[3][3]) const {
       const Triangle::Fields<float> t = tests->triangle(pair(k));

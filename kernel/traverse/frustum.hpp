@@ -196,7 +196,7 @@ class FrustumBuilder {
     });
     if (apart)
       return false;
-    set_stay(lane_min(s0), lane_max(s1));
+    set_extent(lane_min(s0), lane_max(s1));
     farthest_ = lane_max(far);
     return true;
   }
@@ -207,7 +207,7 @@ class FrustumBuilder {
     return dk >= VFloat(kLeastProgress) * ((du + dv) + dk);
   }
 
-  void set_stay(float first, float last) {
+  void set_extent(float first, float last) {
     first_ = first;
     last_ = last;
     f_.from = max(first, 0.f);

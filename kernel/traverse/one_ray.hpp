@@ -191,9 +191,9 @@ inline Hit trace_one(const SceneView& scene, const Ray& ray, const RayFilter* fi
   const std::uint32_t id = id_of(*r.id);
   if (kAny || id == kNoPrimitive)
     return {ray.t_max, id};
-  const ExactRay given_ray = r.given.ray(0).in_units_of(1 / static_cast<double>(*r.unit));
+  const ExactRay caller_ray = r.given.ray(0).in_units_of(1 / static_cast<double>(*r.unit));
   const CrossingSpan span = *r.unit == 1 ? CrossingSpan{*r.low, *r.best} : CrossingSpan{};
-  return {strictly_between(t_of(r, given_ray, span), ray.t_min, ray.t_max), id};
+  return {strictly_between(t_of(r, caller_ray, span), ray.t_min, ray.t_max), id};
 }
 
 }  // namespace grelha::GRELHA_ISA

@@ -103,7 +103,7 @@ inline void fill_up(Packet& p) {
 }
 
 /// Keeps the ends of searches as the caller gave them.
-inline void keep_ends(Packet& p) {
+inline void save_intervals(Packet& p) {
   for (int i = 0; i < p.groups * kWidth<VFloat>; ++i) {
     p.unit[i] = 1;
     p.given_t_min[i] = p.t_min[i];
@@ -117,11 +117,11 @@ inline void keep_ends(Packet& p) {
 
 /// Divides the directions of a group that need it. That changes no bit of an answer but where
 /// something left the range of floats.
-[[gnu::noinline]] inline void set_length_units(Packet& p, int first) {
+[[gnu::noinline]] inline void set_direction_scales(Packet& p, int first) {
   if (!p.has_units)
-    keep_ends(p);
+    save_intervals(p);
   const Vec3<VFloat> d = take_vec<VFloat>(p.dir, first);
-  const VFloat unit = length_unit(d);
+  const VFloat unit = direction_scale(d);
   store(p.unit + first, unit);
   store(p.dir[0] + first, d.x / unit);
   store(p.dir[1] + first, d.y / unit);
@@ -129,7 +129,7 @@ inline void keep_ends(Packet& p) {
   for (int i = first; i < first + kWidth<VFloat>; ++i)
     if (p.unit[i] != 1) {
       p.given_t_max[i] = p.best[i] = finite_end(p.unit[i], p.best[i]);
-      count_in(p.unit[i], p.t_min[i], p.best[i]);
+      scale_interval(p.unit[i], p.t_min[i], p.best[i]);
     }
 }
 
@@ -140,8 +140,8 @@ inline void keep_ends(Packet& p) {
   const VFloat t_max = load<VFloat>(p.best + i);
   const Mask<VFloat> searches = next_above(load<VFloat>(p.t_min + i)) < t_max;
   store(p.best + i, select(searches, t_max, VFloat(-kInfinity)));
-  if (any(mask_or(dd<VFloat(kShortest), dd> VFloat(kLongest)))) [[unlikely]] {
-    set_length_units(p, i);
+  if (any(mask_or(dd<VFloat(kMinSquaredLength), dd> VFloat(kMaxSquaredLength)))) [[unlikely]] {
+    set_direction_scales(p, i);
     d = take_vec<VFloat>(p.dir, i);
     dd = dot(d, d);
   }
@@ -236,7 +236,7 @@ inline void count_rows(NoCounts&, int, int) {}
 
 /// Takes a hit that floats cannot tell from ray i's hit so far, `held`, or from the end of its
 /// search: returns which counts, or kNoPrimitive, and `span` of the first one.
-[[gnu::noinline, gnu::cold]] inline std::uint32_t settle_tie(
+[[gnu::noinline, gnu::cold]] inline std::uint32_t resolve_tie(
     const RayFrame& frame, int i, std::uint32_t held, std::uint32_t id, CrossingSpan& span) {
   const ExactRay ray = frame.given.ray(i);
   const double shift = frame.given.shift_of(i);
@@ -256,7 +256,7 @@ template <bool kAny, class Ray>
   if (!(t.lo <= r.rays.best[r.i]))
     return false;
   if (const RayFilter* const filter = r.rays.filter) [[unlikely]] {
-    id = filter->hit_of(r.i, id);
+    id = filter->passing_copy(r.i, id);
     if (id == kNoPrimitive)
       return false;
   }
@@ -264,7 +264,7 @@ template <bool kAny, class Ray>
   if (!(t.hi < r.rays.low[r.i])) {
     if (id == id_of(r))
       return false;
-    id = settle_tie(r.rays, r.i, id_of(r), id, first);
+    id = resolve_tie(r.rays, r.i, id_of(r), id, first);
     if (id == kNoPrimitive)
       return false;
   }
@@ -349,9 +349,9 @@ template <bool kAny>
 }
 
 /// True if one of the rays from i on does not hit primitive `id` itself where it crosses it.
-inline bool filters_some(const Packet& p, int i, unsigned lanes, std::uint32_t id) {
+inline bool any_filtered(const Packet& p, int i, unsigned lanes, std::uint32_t id) {
   bool some = false;
-  each_bit(lanes, [&](int k) { some |= p.filter->hit_of(i + k, id) != id; });
+  each_bit(lanes, [&](int k) { some |= p.filter->passing_copy(i + k, id) != id; });
   return some;
 }
 
@@ -367,7 +367,7 @@ inline void record(Packet& p,
   const Mask<VFloat> candidate = mask_and(found.some, found.lo <= best);
   if (none(candidate))
     return;
-  if (p.filter && filters_some(p, i, bits(candidate), id)) [[unlikely]] {
+  if (p.filter && any_filtered(p, i, bits(candidate), id)) [[unlikely]] {
     take_hits<kAny>(p, i, found, bits(candidate), id);
     return;
   }
@@ -442,7 +442,7 @@ struct TriangleSource {
   float frame_error() const { return p.frame_error; }
   ExactRay given(int k) const { return p.given.ray(i + k); }
   double shift(int k) const { return p.given.shift_of(i + k); }
-  bool leaves_out(int k) const { return p.leaves_out(i + k, id); }
+  bool is_filtered(int k) const { return p.is_filtered(i + k, id); }
   void take_vertices(int, float (&to)[3][3]) const {
     __builtin_memcpy(to, as_it_is.corner, sizeof to);
   }
@@ -575,7 +575,7 @@ template <class Shape, int k = 0>
 }
 
 /// A ray of a packet, with t counted as the caller does.
-inline ExactRay given_ray(const Packet& p, int i) {
+inline ExactRay caller_ray(const Packet& p, int i) {
   const ExactRay ray = p.given.ray(i);
   return p.has_units ? ray.in_units_of(1 / static_cast<double>(p.unit[i])) : ray;
 }
@@ -606,7 +606,7 @@ inline void round_hits(const Packet& p, int i, float* t) {
     const unsigned known = bits(least == narrow<VFloat>(hi));
     store(t, select(mask_of(VUint(here)), least, load<VFloat>(t)));
     each_bit(lanes & ~known,
-             [&](int k) { t[k] = rounded_t(g, given_ray(p, i + k), id_of(p.id[i + k])); });
+             [&](int k) { t[k] = rounded_t(g, caller_ray(p, i + k), id_of(p.id[i + k])); });
   });
 }
 

@@ -23,7 +23,7 @@ struct RayFilter {
 
   /// What ray i hits where it crosses primitive `id`: of that and its copies the first that is not
   /// left out, or kNoPrimitive.
-  std::uint32_t hit_of(int i, std::uint32_t id) const {
+  std::uint32_t passing_copy(int i, std::uint32_t id) const {
     if (passes(i, id))
       return id;
     for (std::uint32_t c = copies.begin(id); copies.has(c, id); ++c)
@@ -124,7 +124,7 @@ inline constexpr float kInfinity = __builtin_inff();
 /// The scene of rays, the rays as the caller gave them, and the frame that they are in.
 struct RayFrame {
   const GeometryView* geometry = nullptr;
-  GivenRays given;
+  CallerRays given;
   const RayFilter* filter = nullptr;    ///< null: rays hit everything
   CandidateSink* candidates = nullptr;  ///< of searches for all hits
   const float* base = nullptr;          ///< x, y, z of where the frame begins; null: 0
@@ -132,12 +132,12 @@ struct RayFrame {
   float error_bound = kInfinity;        ///< see SimdRays
 
   /// True if ray i hits nothing where it crosses primitive `id`.
-  bool leaves_out(int i, std::uint32_t id) const {
-    return filter && filter->hit_of(i, id) == kNoPrimitive;
+  bool is_filtered(int i, std::uint32_t id) const {
+    return filter && filter->passing_copy(i, id) == kNoPrimitive;
   }
 };
 
-/// The same in the frame of a grid; `shift` as in GivenRays.
+/// The same in the frame of a grid; `shift` as in CallerRays.
 inline RayFrame grid_frame(const RayFrame& from, const GridView& g, const double* shift) {
   RayFrame to = from;
   to.given.shift = shift;
@@ -203,15 +203,16 @@ template <class Real, class Number, int kRays>
 inline constexpr float kNoInverse = 0x1p-128f;
 /// Squared lengths of directions that are traced as they are. With others products of t, lengths of
 /// directions and sizes of primitives, from 2^-60 to 2^60, leave what floats can hold.
-inline constexpr float kShortest = 0x1p-4f;
-inline constexpr float kLongest = 0x1p16f;
+inline constexpr float kMinSquaredLength = 0x1p-4f;
+inline constexpr float kMaxSquaredLength = 0x1p16f;
 
 /// The powers of two by which directions are divided so that their largest component is in [1, 2);
 /// 1 where they are fine as they are, or sound at no length.
 template <class Real>
-inline Real length_unit(const Vec3<Real>& dir) {
+inline Real direction_scale(const Vec3<Real>& dir) {
   const Real squared = dot(dir, dir);
-  const Mask<Real> fine = mask_and(squared >= Real(kShortest), squared <= Real(kLongest));
+  const Mask<Real> fine =
+      mask_and(squared >= Real(kMinSquaredLength), squared <= Real(kMaxSquaredLength));
   const Mask<Real> sound = mask_and(squared > Real(kNoInverse), squared < Real(kInfinity));
   constexpr int kMantissa = 23;
   const Int<Real> exponent = float_bits(largest(dir)) >> kMantissa;
@@ -224,7 +225,7 @@ inline float finite_end(float unit, float t_max) {
 }
 /// Ends of a search in multiples of `unit`, rounded outwards: floats within are sure to be within
 /// what the caller gave, and exact tests read that.
-inline void count_in(float unit, float& t_min, float& t_max) {
+inline void scale_interval(float unit, float& t_min, float& t_max) {
   const double by = unit;
   t_min = round_down(by * t_min);
   t_max = round_up(by * t_max);
@@ -271,17 +272,17 @@ inline void set_inverse(Single& r, const Vec3<float>& d) {
   store(r.near, inverse < four(0) ? low + 3 : low);
 }
 
-/// The direction and the ends of a ray, as set_length_units() has them.
-inline Vec3<float> set_length_unit(Single& r, const Ray& ray) {
+/// The direction and the ends of a ray, as set_direction_scales() has them.
+inline Vec3<float> set_direction_scale(Single& r, const Ray& ray) {
   const Vec3<float> dir{ray.dir.x, ray.dir.y, ray.dir.z};
-  const float unit = length_unit(dir);
+  const float unit = direction_scale(dir);
   *r.unit = unit;
   *r.t_min = *r.given_t_min = ray.t_min;
   *r.best = *r.given_t_max = ray.t_max;
   if (unit == 1) [[likely]]
     return dir;
   *r.best = *r.given_t_max = finite_end(unit, ray.t_max);
-  count_in(unit, *r.t_min, *r.best);
+  scale_interval(unit, *r.t_min, *r.best);
   return {dir.x / unit, dir.y / unit, dir.z / unit};
 }
 
@@ -296,7 +297,7 @@ inline float strictly_between(float t, float t_min, float t_max) {
 inline bool prepare(Single& r, const Ray& ray, bool any_triangles) {
   if (!(next_above(ray.t_min) < ray.t_max))
     return false;
-  const Vec3<float> d = set_length_unit(r, ray);
+  const Vec3<float> d = set_direction_scale(r, ray);
   const Float3& org = ray.org;
   const float dd = dot(d, d);
   // NaN and infinity times zero are NaN

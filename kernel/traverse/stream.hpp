@@ -88,16 +88,16 @@ class StreamFilter {
  public:
   StreamFilter(const SceneView& scene, const Rays& rays, const TraceOptions& options)
       : all_{rays.skip, rays.mask, options.masks, scene.copies},
-        leaves_out_(rays.skip || rays.mask || options.masks) {}
+        filters_(rays.skip || rays.mask || options.masks) {}
   /// Gives a packet that begins with ray `first` its filter, which holds until the next one.
   void set(std::size_t first, Packet& p) {
     here_ = all_.after(first);
-    p.filter = leaves_out_ ? &here_ : nullptr;
+    p.filter = filters_ ? &here_ : nullptr;
   }
 
  private:
   RayFilter all_, here_;
-  bool leaves_out_;
+  bool filters_;
 };
 
 /// Number of rays that are loaded together, so that many step side by side when packets fall apart.
@@ -159,7 +159,7 @@ inline void store_doubles(const Packet& p, const Rays& rays, std::size_t first, 
   float t_max[kPacket];
   load_t_max(rays, first, p.size, t_max);
   for (int i = 0; i < p.size; ++i)
-    to[i] = met(p, i) ? double_t(*p.geometry, given_ray(p, i), id_of(p.id[i])) : t_max[i];
+    to[i] = met(p, i) ? double_t(*p.geometry, caller_ray(p, i), id_of(p.id[i])) : t_max[i];
 }
 
 /// Barycentric coordinates; 0 of rays that hit no triangle.

@@ -194,7 +194,7 @@ template <class T>
 }
 
 /// Most bytes of the fields of kinds whose primitives are prefetched: larger ones come too late.
-inline constexpr std::size_t kAskedFor = 16;
+inline constexpr std::size_t kMaxPrefetchBytes = 16;
 
 /// Tests rays against the contents of the cells they came to.
 template <Find kFind>
@@ -252,8 +252,8 @@ class CellTests {
       Block enter;
       const unsigned hit = hit_boxes_from(r, triangles_.boxes[at / kBlock], i, enter);
       const CompressMask selected(hit & blocks >> i);
-      store_words(due_ray_ + due, Words<Block>{} + ray);
-      selected.store(due_block_ + due, counted_words<Block>(block + static_cast<unsigned>(i)));
+      store_words(queued_ray_ + due, Words<Block>{} + ray);
+      selected.store(queued_block_ + due, counted_words<Block>(block + static_cast<unsigned>(i)));
       due += selected.count();
     }
     return due;
@@ -263,11 +263,11 @@ class CellTests {
   [[gnu::noinline]] void flush(int due) {
     count_rows<Triangle>(n_, due, kBlock);
     for (int k = 0; k < due && k < kPrefetch; ++k)
-      prefetch(triangles_.blocks + due_block_[k]);
+      prefetch(triangles_.blocks + queued_block_[k]);
     for (int k = 0; k < due; ++k) {
       const int next = k + kPrefetch < due ? k + kPrefetch : due - 1;
-      prefetch(triangles_.blocks + due_block_[next]);
-      pairs_.add(due_ray_[k], due_block_[k]);
+      prefetch(triangles_.blocks + queued_block_[next]);
+      pairs_.add(queued_ray_[k], queued_block_[k]);
     }
     pairs_.test();
   }
@@ -275,13 +275,13 @@ class CellTests {
   template <class Shape>
   [[gnu::noinline]] void test_arrays(const LeafQueue& to) {
     const typename Shape::CellList& list = lists_.of<Shape>();
-    if constexpr (sizeof(typename Shape::template Fields<float>) <= kAskedFor)
+    if constexpr (sizeof(typename Shape::template Fields<float>) <= kMaxPrefetchBytes)
       for (int k = 0; k < to.count; ++k)
         fetch<Shape>(list, list.first[to.cell[k]]);
     if constexpr (kFind == Find::kAll)
       for (int k = 0; k < to.count; ++k)
         list_rows<Shape>(PacketRay{p_, static_cast<int>(to.ray[k])}, list, to.cell[k]);
-    else if constexpr (!kAny && kSortsOut<Shape>)
+    else if constexpr (!kAny && kHasPrefilter<Shape>)
       test_selected_rows<Shape>(list, to);
     else
       for (int k = 0; k < to.count; ++k) {
@@ -293,8 +293,8 @@ class CellTests {
 
   /// True if missed primitives are sorted out before the others are tested.
   template <class Shape>
-  static constexpr bool kSortsOut = requires(const SimdRays<Block>& ray,
-                                             const typename Shape::template Fields<Block>& row) {
+  static constexpr bool kHasPrefilter =
+      requires(const SimdRays<Block>& ray, const typename Shape::template Fields<Block>& row) {
     may_intersect(ray, row);
   };
 
@@ -307,8 +307,8 @@ class CellTests {
       const std::uint32_t end = list.first[to.cell[k] + 1];
       for (std::uint32_t i = list.first[to.cell[k]]; i < end; i += kWidth<Block>) {
         count_rows<Shape>(n_, 1, kWidth<Block>);
-        due_ray_[due] = to.ray[k];
-        due_block_[due] = i;
+        queued_ray_[due] = to.ray[k];
+        queued_block_[due] = i;
         due += any(may_intersect(ray, side_by_side<Shape, Block>(list.fields, i)));
         if (due == kMost) {
           test_rows<Shape>(list, due);
@@ -322,9 +322,9 @@ class CellTests {
   template <class Shape>
   [[gnu::always_inline]] void test_rows(const typename Shape::CellList& list, int due) {
     for (int k = 0; k < due; ++k) {
-      PacketRay r{p_, static_cast<int>(due_ray_[k])};
+      PacketRay r{p_, static_cast<int>(queued_ray_[k])};
       if (searches(r.i))
-        test_row<kAny, Shape>(r, spread<Block>(r), list, due_block_[k]);
+        test_row<kAny, Shape>(r, spread<Block>(r), list, queued_block_[k]);
     }
   }
 
@@ -348,8 +348,8 @@ class CellTests {
   TraceCounts& n_;
   std::uint32_t first_[kPacket];
   std::uint32_t end_[kPacket];
-  alignas(64) std::uint32_t due_ray_[kMost + kBlock];
-  alignas(64) std::uint32_t due_block_[kMost + kBlock];
+  alignas(64) std::uint32_t queued_ray_[kMost + kBlock];
+  alignas(64) std::uint32_t queued_block_[kMost + kBlock];
   PairTests<kFind> pairs_;
 };
 

@@ -2,8 +2,8 @@
 // Traces the rays of a packet through a whole scene: planes and outside primitives first, then each
 // grid with the remaining range of t. Floats lose the way of a ray that starts far from a grid, so
 // it walks in the frame of the grid: from the grid's corner, and from the point where it comes
-// near, which is found in double. Cases that float tests cannot decide there are decided with the ray as
-// given.
+// near, which is found in double. Cases that float tests cannot decide there are decided with the
+// ray as given.
 
 #include "kernel/traverse/packet_walk.hpp"
 #include "kernel/traverse/packet.hpp"

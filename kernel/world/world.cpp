@@ -78,11 +78,11 @@ World::Impl::Impl(const SceneSpans& s,
                   const BuildOptions& options,
                   const Impl* before,
                   std::span<const Object> moved)
-    : scene(completed(s, no_materials)),
+    : scene(completed(s, default_material_ids)),
       primitives(scene.geometry),
       materials(scene),
       lights(scene.lights, scene.background) {
-  const KeepThreadsAwake awake;
+  const SpinWaitScope awake;
   BuildProgress progress(options.progress);
   Plan plan = plan_grids(
       primitives, options, progress, before ? before->memory_of_unmoved(moved) : PlanMemory());

@@ -44,7 +44,7 @@ struct BuiltGrid {
 };
 
 struct World::Impl {
-  std::vector<std::uint32_t> no_materials;  ///< zeros, for kinds without material indices
+  std::vector<std::uint32_t> default_material_ids;  ///< zeros, for kinds without material indices
   SceneSpans scene;
   Primitives primitives;
   std::vector<std::shared_ptr<const BuiltGrid>> grids;   ///< an update may share some

@@ -153,14 +153,14 @@ bool test_cells(WalkedRay& r, const GridView& g, RayMailbox* box, TraceCounts& n
 
 /// False when the ray can hit nothing. Lengths of directions are those of the kernel.
 inline bool load_ray(Ray ray, const GeometryView& g, WalkedRay& r) {
-  const float unit = r.unit = length_unit(Vec3<float>{ray.dir.x, ray.dir.y, ray.dir.z});
+  const float unit = r.unit = direction_scale(Vec3<float>{ray.dir.x, ray.dir.y, ray.dir.z});
   const bool is_empty = !(next_above(ray.t_min) < ray.t_max);
   if (unit != 1)
     ray.t_max = finite_end(unit, ray.t_max);
   const double begin = static_cast<double>(unit) * ray.t_min;
   const double end = static_cast<double>(unit) * ray.t_max;
   if (unit != 1)
-    count_in(unit, ray.t_min, ray.t_max);
+    scale_interval(unit, ray.t_min, ray.t_max);
   const float org[3] = {ray.org.x, ray.org.y, ray.org.z};
   const float d[3] = {ray.dir.x / unit, ray.dir.y / unit, ray.dir.z / unit};
   for (int a = 0; a < 3; ++a) {

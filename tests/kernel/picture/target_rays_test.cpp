@@ -150,7 +150,7 @@ TEST(MeshParts, AreConnectedByIndexOrPlace) {
   t.b.push_back(7);
   t.c.push_back(8);
   t.material.push_back(0);
-  const std::vector<Rod> rods = mesh_parts(TriangleSpans(t));
+  const std::vector<Capsule> rods = mesh_parts(TriangleSpans(t));
   ASSERT_EQ(rods.size(), 2u);
   EXPECT_NEAR(rods[0].length(), 6, .01);
   EXPECT_NEAR(rods[0].radius, .05, .06);
@@ -175,7 +175,7 @@ TEST(MeshParts, OfManyTrianglesLieWhereTheyAll) {
     t.c.push_back(i + 2);
     t.material.push_back(0);
   }
-  const std::vector<Rod> rods = mesh_parts(TriangleSpans(t));
+  const std::vector<Capsule> rods = mesh_parts(TriangleSpans(t));
   ASSERT_EQ(rods.size(), 1u);
   EXPECT_NEAR(rods[0].length(), kCount, 20);
   EXPECT_NEAR(rods[0].radius, 1, .01);
