@@ -16,7 +16,7 @@ import tempfile
 
 ALLOWED = {"scenes": r"scenes/", "include": r"grelha/", "kernel": r"kernel/|grelha/",
            "frontend": r"(frontend|kernel|grelha)/", "c": r"c/|grelha/|grelha\.h$"}
-ROOMS = {"kernel": "base scene shapes grid traverse query shade picture isa".split(),
+ROOMS = {"kernel": "base scene shapes grid world traverse query shade picture isa".split(),
          "frontend": "files images scene ply nff input commands jobs cli".split()}
 # `grelha scene` offers the generators.
 EXCEPTION = ("frontend/cli/main.cpp", "scenes/generators.hpp")

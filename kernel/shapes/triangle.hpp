@@ -26,7 +26,7 @@ struct alignas(64) TriangleBlock {
 /// A row of boxes, for up to eight blocks that follow each other: each holds the part of a block's
 /// triangles within its cell, and is grown. A ray that hits a triangle there passes through the
 /// box. The box of an unused position ends before it begins, so no ray passes through it. Position
-/// p is box p % kBlock of row p / kBlock; box_allocator.hpp says which block has which.
+/// p is box p % kBlock of row p / kBlock; grid_steps.hpp says which block has which.
 struct alignas(64) BlockBoxes {
   float side[6][kBlock];  ///< least x, y, z, greatest x, y, z
 };
@@ -151,7 +151,7 @@ struct Triangle {
     }
   };
   /// Cell after cell: cell i owns blocks first[i] up to first[i + 1] - 1, or, if blocks have boxes,
-  /// those at positions first[i] up to first[i + 1] - 1 of box_allocator.hpp. If no cell holds any,
+  /// those at positions first[i] up to first[i + 1] - 1 of grid_steps.hpp. If no cell holds any,
   /// first == nullptr.
   struct CellList {
     const std::uint32_t* first = nullptr;
