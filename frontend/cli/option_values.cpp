@@ -3,7 +3,7 @@
 #include "frontend/files/atomic_file.hpp"
 #include "frontend/files/text.hpp"
 #include "frontend/images/image_file.hpp"
-#include "frontend/scene/scene_builder.hpp"
+#include "grelha/coordinates.hpp"
 
 #include <algorithm>
 #include <charconv>

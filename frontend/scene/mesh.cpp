@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "frontend/scene/double3.hpp"
-#include "frontend/scene/scene_builder.hpp"
 #include "kernel/base/sine.hpp"
 
 namespace grelha {

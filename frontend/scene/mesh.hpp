@@ -4,9 +4,18 @@
 #include <cstdint>
 #include <vector>
 
+#include "grelha/coordinates.hpp"
 #include "grelha/geometry.hpp"
 
 namespace grelha {
+
+/// Returns true if a coordinate or radius is drawn. False for NaN as well.
+inline bool is_finite_float(float v) {
+  return v >= -kLargestLength && v <= kLargestLength;
+}
+inline bool is_finite_float(const Float3& v) {
+  return is_finite_float(v.x) && is_finite_float(v.y) && is_finite_float(v.z);
+}
 
 /// Faces over shared vertices as a file gives them, indices already checked.
 struct Mesh {

@@ -11,17 +11,8 @@
 #include "frontend/scene/mesh.hpp"
 #include "frontend/scene/polygon.hpp"
 #include "frontend/scene/scene_file.hpp"
-#include "grelha/coordinates.hpp"
 
 namespace grelha {
-
-/// False for NaN as well.
-inline bool is_finite_float(float v) {
-  return v >= -kLargestLength && v <= kLargestLength;
-}
-inline bool is_finite_float(const Float3& v) {
-  return is_finite_float(v.x) && is_finite_float(v.y) && is_finite_float(v.z);
-}
 
 /// Returns a normal whose square fits a float; (0,0,0), "none", if it has no direction.
 Float3 valid_normal(const Float3& n);
