@@ -1,11 +1,10 @@
-#include "kernel/grid/box_levels.hpp"
+#include "kernel/grid/grid.hpp"
 
 #include <algorithm>
 #include <limits>
 #include <span>
 
 #include "kernel/grid/grid_steps.hpp"
-#include "kernel/grid/grid.hpp"
 #include "kernel/grid/packed_order.hpp"
 #include "kernel/shapes/rounding.hpp"
 

@@ -13,7 +13,6 @@
 #include "kernel/shapes/arrays.hpp"
 #include "kernel/grid/grid.hpp"
 #include "kernel/base/raw_vector.hpp"
-#include "kernel/grid/box_levels.hpp"
 
 namespace grelha {
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <span>
 
-#include "kernel/grid/box_levels.hpp"
+#include "kernel/grid/grid.hpp"
 #include "kernel/grid/packed_order.hpp"
 #include "kernel/world/visible.hpp"
 #include "kernel/shapes/triangle.hpp"
