@@ -144,7 +144,7 @@ class Picture {
   bool is_valid() const;
 
   /// Gives an archive the numbers that say what the picture is, then its arrays; see
-  /// Fields.
+  /// visit_numbers().
   template <class Archive>
   void save_numbers(Archive&& archive) const {
     std::visit([&](const auto& state) { visit_numbers(archive, state); }, state_);
