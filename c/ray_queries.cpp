@@ -43,35 +43,6 @@ Rays rays_of(const grelha_rays* rays) {
           .dir_stride = floats_of(rays->dir_stride, rays->count, "dir_stride")};
 }
 
-const float* moved(const float* array, std::ptrdiff_t stride, std::size_t by) {
-  return array + static_cast<std::ptrdiff_t>(by) * stride;
-}
-
-/// Rays [first, end).
-Rays part_of(const Rays& rays, std::size_t first, std::size_t end) {
-  Rays part = rays;
-  for (int a = 0; a < 3; ++a) {
-    part.org[a] = moved(rays.org[a], rays.org_stride, first);
-    part.dir[a] = moved(rays.dir[a], rays.dir_stride, first);
-  }
-  part.t_min = rays.t_min ? rays.t_min + first : nullptr;
-  part.t_max = rays.t_max ? rays.t_max + first : nullptr;
-  part.skip = rays.skip ? rays.skip + first : nullptr;
-  part.mask = rays.mask ? rays.mask + first : nullptr;
-  part.count = end - first;
-  return part;
-}
-
-Ray ray_of(const Rays& rays, std::size_t i) {
-  const Rays one = part_of(rays, i, i + 1);
-  Ray ray{{*one.org[0], *one.org[1], *one.org[2]}, {*one.dir[0], *one.dir[1], *one.dir[2]}};
-  if (one.t_min)
-    ray.t_min = *one.t_min;
-  if (one.t_max)
-    ray.t_max = *one.t_max;
-  return ray;
-}
-
 constexpr std::size_t kPart = std::size_t{1} << 17;
 
 /// Where a member of each item is stored, if it is wanted.
@@ -100,7 +71,7 @@ void list_by_parts(const Rays& rays,
   const bool stores = (columns.to || ...);
   offset[0] = 0;
   for (std::size_t first = 0; first < rays.count; first += kPart) {
-    const Rays part = part_of(rays, first, std::min(rays.count, first + kPart));
+    const Rays part = rays.part(first, std::min(rays.count, first + kPart));
     std::size_t* const to = offset + first;
     if (stores && to[0] <= capacity) {
       const auto [offsets, items] = list(part);
@@ -236,7 +207,7 @@ grelha_status grelha_each_hit(const grelha_world* world,
       const grelha::Filter filter{.skip = stream.skip ? stream.skip[i] : grelha::kNoPrimitive,
                                   .masks = world->masks(),
                                   .mask = stream.mask ? stream.mask[i] : std::uint8_t{255}};
-      grelha::all_hits(asked, ray_of(stream, i), visit_hit, filter);
+      grelha::all_hits(asked, stream[i], visit_hit, filter);
     }
   });
 }

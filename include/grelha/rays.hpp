@@ -53,6 +53,10 @@ struct Rays {
   std::ptrdiff_t dir_stride = 1;  ///< the same of dir
   std::ptrdiff_t t_stride = 1;    ///< the same of t_min and t_max
 
+  /// Returns ray i.
+  Ray operator[](std::size_t i) const;
+  /// Returns a view of the rays [first, end).
+  Rays part(std::size_t first, std::size_t end) const;
   /// Returns a view of an array of rays.
   static Rays of(std::span<const Ray> rays);
   /// Returns a view of origins and directions stored as x y z x y z; t_min is 0, t_max infinity.

@@ -228,10 +228,10 @@ void visit_run(const Variant& variant,
                std::size_t end,
                const Visit& visit) {
   List list(world);
-  const Rays run = part_of(rays, first, end);
+  const Rays run = rays.part(first, end);
   visit_candidates(variant, world, run, List::kWanted, [&](std::size_t k, auto candidates) {
     const std::size_t i = first + k;
-    list.set(ray_of(rays, i), filter_of(rays, options, i));
+    list.set(rays[i], filter_of(rays, options, i));
     visit(i, list, candidates);
   });
 }

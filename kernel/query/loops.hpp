@@ -133,7 +133,7 @@ inline constexpr std::size_t kFewToList = 4;
 inline void collect(const SceneView& scene, const Rays& rays, CandidateSink& to) {
   if (rays.count <= kFewToList) {
     for (std::size_t i = 0; i < rays.count; ++i) {
-      list_one(scene, ray_of(rays, i), to);
+      list_one(scene, rays[i], to);
       to.end_packet(i, 1);
     }
     return;

@@ -68,7 +68,7 @@ void closest(const World& world,
   const ClosestLoop loop = choose_variant(options.isa, rays.count).loops.closest;
   const TraceOptions how = options_of(options);
   const auto trace = [&](std::size_t first, std::size_t end, TraceCounts& to) {
-    loop(world.impl().view, part_of(rays, first, end), part_of(hits, first), how, to);
+    loop(world.impl().view, rays.part(first, end), part_of(hits, first), how, to);
   };
   counted_runs(rays.count, options, counts ? *counts : unread, trace);
 }
@@ -101,7 +101,7 @@ void occluded(const World& world,
   const OccludedLoop loop = choose_variant(options.isa, rays.count).loops.occluded;
   const TraceOptions how = options_of(options);
   const auto trace = [&](std::size_t first, std::size_t end, TraceCounts& to) {
-    loop(world.impl().view, part_of(rays, first, end), blocked + first, how, to);
+    loop(world.impl().view, rays.part(first, end), blocked + first, how, to);
   };
   counted_runs(rays.count, options, counts ? *counts : unread, trace);
 }

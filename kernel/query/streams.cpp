@@ -43,27 +43,27 @@ const float* moved(const float* array, std::ptrdiff_t stride, std::size_t by) {
 }
 }  // namespace
 
-Ray ray_of(const Rays& rays, std::size_t i) {
+Ray Rays::operator[](std::size_t i) const {
   const auto three = [i](const float* const(&of)[3], std::ptrdiff_t stride) {
     return Float3{
         element(of[0], stride, i, 0), element(of[1], stride, i, 0), element(of[2], stride, i, 0)};
   };
-  return {three(rays.org, rays.org_stride),
-          three(rays.dir, rays.dir_stride),
-          element(rays.t_min, rays.t_stride, i, 0),
-          element(rays.t_max, rays.t_stride, i, Ray{}.t_max)};
+  return {three(org, org_stride),
+          three(dir, dir_stride),
+          element(t_min, t_stride, i, 0),
+          element(t_max, t_stride, i, Ray{}.t_max)};
 }
 
-Rays part_of(const Rays& rays, std::size_t first, std::size_t end) {
-  Rays part = rays;
+Rays Rays::part(std::size_t first, std::size_t end) const {
+  Rays part = *this;
   for (int a = 0; a < 3; ++a) {
-    part.org[a] = moved(rays.org[a], rays.org_stride, first);
-    part.dir[a] = moved(rays.dir[a], rays.dir_stride, first);
+    part.org[a] = moved(org[a], org_stride, first);
+    part.dir[a] = moved(dir[a], dir_stride, first);
   }
-  part.t_min = moved(rays.t_min, rays.t_stride, first);
-  part.t_max = moved(rays.t_max, rays.t_stride, first);
-  part.skip = rays.skip ? rays.skip + first : nullptr;
-  part.mask = rays.mask ? rays.mask + first : nullptr;
+  part.t_min = moved(t_min, t_stride, first);
+  part.t_max = moved(t_max, t_stride, first);
+  part.skip = skip ? skip + first : nullptr;
+  part.mask = mask ? mask + first : nullptr;
   part.count = end - first;
   return part;
 }

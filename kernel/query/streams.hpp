@@ -14,10 +14,6 @@ void expect_arrays(const Rays& rays);
 /// Throws std::invalid_argument if there are masks, but not one for each primitive.
 void expect_masks(const World& world, std::span<const std::uint8_t> masks);
 
-/// Ray i of a stream.
-Ray ray_of(const Rays& rays, std::size_t i);
-/// Rays [first, end) of a stream.
-Rays part_of(const Rays& rays, std::size_t first, std::size_t end);
 /// Answers of the rays from `first` on.
 Hits part_of(const Hits& hits, std::size_t first);
 /// What ray i of a stream leaves out.
