@@ -17,7 +17,7 @@ struct CellLists : PerShape<CellListOf, FiniteShapes> {};
 
 inline constexpr int kMostGrids = 17;
 
-/// Boxes over cells, eight a node; see box_levels.hpp.
+/// Boxes over cells, eight a node; see grid.hpp.
 struct BoxLevelsView {
   static constexpr int kMostLevels = 11;  ///< of 8^11 = 2^33 cells
   const BlockBoxes* rows = nullptr;
