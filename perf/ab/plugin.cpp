@@ -9,8 +9,12 @@
 #include "grelha/query.hpp"
 #include "grelha/scene_spans.hpp"
 #include "grelha/world.hpp"
-#include "kernel/world/world_impl.hpp"
 #include "kernel/query/variants.hpp"
+#if __has_include("kernel/world/world_impl.hpp")
+#include "kernel/world/world_impl.hpp"
+#else  // an older tree
+#include "kernel/grid/world_impl.hpp"
+#endif
 
 namespace grelha::perf {
 namespace {
