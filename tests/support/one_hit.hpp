@@ -7,6 +7,7 @@
 
 #include "grelha/geometry.hpp"
 #include "kernel/shapes/hit.hpp"
+#include "kernel/shapes/shapes.hpp"
 
 namespace grelha::test {
 
