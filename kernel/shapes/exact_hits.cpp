@@ -13,6 +13,12 @@
 
 namespace grelha {
 
+namespace {
+bool is_along_axis(const ExactRay& r) {
+  return (r.dir[0] == 0) + (r.dir[1] == 0) + (r.dir[2] == 0) == 2;
+}
+}  // namespace
+
 /// The edges of a triangle as a ray along an axis passes them.
 class AxisEdges {
  public:
@@ -84,7 +90,7 @@ class AxisEdges {
 inline scalar::HitInterval<double> bound_crossing(const ExactRay& ray,
                                                   const float (&corner)[3][3]) {
   scalar::HitInterval<double> found = scalar::bound_triangle(ray, corner);
-  if (!found.some || found.sure)
+  if (!found.some || found.sure || !is_along_axis(ray))
     return found;
   const AxisEdges edges(ray, corner);
   if (edges.is_known()) {
@@ -187,7 +193,8 @@ bool meet_on_axis(const GeometryView& g,
                   std::uint32_t id,
                   std::uint32_t other) {
   const std::uint32_t first = g.ids.begin(PrimitiveKind::kTriangle);
-  if (!g.ids.has(PrimitiveKind::kTriangle, id) || !g.ids.has(PrimitiveKind::kTriangle, other))
+  if (!is_along_axis(ray) || !g.ids.has(PrimitiveKind::kTriangle, id) ||
+      !g.ids.has(PrimitiveKind::kTriangle, other))
     return false;
   const One<Triangle> a = g.of<Triangle>().triangle(id - first);
   const One<Triangle> b = g.of<Triangle>().triangle(other - first);
