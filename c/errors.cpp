@@ -51,6 +51,9 @@ grelha_status status_of_exception() noexcept {
   } catch (const TooMany& error) {
     keep(error.what());
     return GRELHA_TOO_MANY;
+  } catch (const Stopped& error) {
+    keep(error.what());
+    return GRELHA_STOPPED;
   } catch (const std::bad_alloc&) {
     keep("the memory ran out");
     return GRELHA_NO_MEMORY;

@@ -48,19 +48,23 @@ OffsetScene scene_of_meshes(const grelha_mesh* meshes, std::size_t count) {
   return scene_of(arrays);
 }
 
-/// Changes the scene of a world: edit(scene) returns what moved, or an empty range. Grids of the
-/// rest are shared.
-template <class Edit>
-grelha_status change(grelha_world* world, int threads, const Edit& edit) noexcept {
-  return guarded([&] {
-    expect_there(world, "world");
-    const BuildOptions options{.threads = expect_threads(threads)};
-    if (world->scene().geometry.spheres.size() > 0)
-      refuse("world", "triangles", "spheres");
-    OffsetScene scene = world->scene();
-    const Object moved = edit(scene);
-    world->replace(std::move(scene), options, {&moved, 1});
-  });
+/// A world of triangles. Throws std::invalid_argument.
+grelha_world& meshes_of(grelha_world* world) {
+  expect_there(world, "world");
+  if (world->scene().geometry.spheres.size() > 0)
+    refuse("world", "triangles", "spheres");
+  return *world;
+}
+
+/// The vertices of a mesh, whose indices are not read.
+PointArray vertices_of(const grelha_mesh& mesh) {
+  return arrays_of({.vertices = mesh.vertices,
+                    .doubles = mesh.doubles,
+                    .stride = mesh.stride,
+                    .vertex_count = mesh.vertex_count,
+                    .indices = nullptr,
+                    .triangle_count = 0})
+      .vertices;
 }
 
 }  // namespace
@@ -98,22 +102,38 @@ grelha_status grelha_mesh_of(const grelha_world* world,
   });
 }
 
+grelha_status grelha_mesh_count(const grelha_world* world, size_t* count) {
+  using namespace grelha::c;
+  return guarded([&] {
+    expect_there(world, "world");
+    expect_there(count, "count");
+    *count = mesh_count(world->scene());
+  });
+}
+
 grelha_status grelha_update_mesh(grelha_world* world,
                                  size_t number,
                                  const grelha_mesh* mesh,
                                  int threads) {
+  return grelha_update_meshes(world, &number, mesh, 1, threads);
+}
+
+grelha_status grelha_update_meshes(grelha_world* world,
+                                   const size_t* numbers,
+                                   const grelha_mesh* meshes,
+                                   size_t count,
+                                   int threads) {
   using namespace grelha::c;
-  return change(world, threads, [&](grelha::OffsetScene& scene) {
-    expect_there(mesh, "mesh");
-    return move_mesh(scene,
-                     number,
-                     arrays_of({.vertices = mesh->vertices,
-                                .doubles = mesh->doubles,
-                                .stride = mesh->stride,
-                                .vertex_count = mesh->vertex_count,
-                                .indices = nullptr,
-                                .triangle_count = 0})
-                         .vertices);
+  return guarded([&] {
+    grelha_world& changed = meshes_of(world);
+    if (count > 0) {
+      expect_there(numbers, "numbers");
+      expect_there(meshes, "mesh");
+    }
+    std::vector<grelha::MeshMove> moves;
+    for (size_t i = 0; i < count; ++i)
+      moves.push_back({numbers[i], vertices_of(meshes[i])});
+    move_meshes(changed, moves, build_options(threads));
   });
 }
 
@@ -122,22 +142,26 @@ grelha_status grelha_add_mesh(grelha_world* world,
                               int threads,
                               size_t* number) {
   using namespace grelha::c;
-  const grelha_status status = change(world, threads, [&](grelha::OffsetScene& scene) {
+  return guarded([&] {
+    grelha_world& changed = meshes_of(world);
     expect_there(mesh, "mesh");
     const grelha::MeshArrays added = arrays_of(*mesh);
-    const grelha::Triangles& all = scene.geometry.triangles;
+    const grelha::Triangles& all = changed.scene().geometry.triangles;
     expect_at_most(all.vertex_count() + added.vertices.count, kMostVertices - 2, "vertices of all");
     expect_at_most(all.size() + added.faces.size(), kMostPrimitives, "triangles of all");
-    return add_mesh(scene, added);
+    add_mesh(changed, added, build_options(threads));
+    if (number)
+      *number = mesh_count(changed.scene()) - 1;
   });
-  if (status == GRELHA_OK && number)
-    *number = grelha::mesh_count(world->scene()) - 1;
-  return status;
 }
 
 grelha_status grelha_set_visible(grelha_world* world, size_t number, int visible, int threads) {
-  return grelha::c::change(world, threads, [&](grelha::OffsetScene& scene) {
-    grelha::show_mesh(scene, number, visible != 0);
-    return grelha::Object{};
-  });
+  using namespace grelha::c;
+  return guarded(
+      [&] { show_mesh(meshes_of(world), number, visible != 0, build_options(threads)); });
+}
+
+grelha_status grelha_remove_mesh(grelha_world* world, size_t number, int threads) {
+  using namespace grelha::c;
+  return guarded([&] { remove_mesh(meshes_of(world), number, build_options(threads)); });
 }

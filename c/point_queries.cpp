@@ -12,23 +12,24 @@ namespace {
 /// Calls work(world, points, first, options) for copies of the points, a part at a time: the kernel
 /// wants them without gaps, and a copy of all could be too large.
 template <class Work>
-void each_part(const grelha_world* world,
+void each_copy(const grelha_world* world,
                const PointArray& all,
                int threads,
                const Work& work,
                InsideRule rule = {}) {
   constexpr std::size_t kPart = std::size_t{1} << 20;
   const World& asked = world_of(world);
-  const QueryOptions options{.threads = expect_threads(threads), .inside = rule};
+  QueryOptions options{.threads = expect_threads(threads), .inside = rule};
   std::vector<Float3> points;
-  for (std::size_t first = 0; first < all.count; first += kPart) {
-    points.resize(std::min(kPart, all.count - first));
+  each_part(all.count, kPart, [&](Part part) {
+    points.resize(part.end - part.first);
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const auto at = [&](std::size_t a) { return static_cast<float>(all.at(first + i, a)); };
+      const auto at = [&](std::size_t a) { return static_cast<float>(all.at(part.first + i, a)); };
       points[i] = {at(0), at(1), at(2)};
     }
-    work(asked, std::span<const Float3>(points), first, options);
-  }
+    options.progress = progress_of(part);
+    work(asked, std::span<const Float3>(points), part.first, options);
+  });
 }
 
 InsideRule rule_of(grelha_inside rule) {
@@ -77,7 +78,7 @@ grelha_status grelha_contains(const grelha_world* world,
     const auto work = [&](auto& asked, auto part, auto first, auto& options) {
       grelha::contains(asked, part, {inside + first, part.size()}, options);
     };
-    each_part(world, all, threads, work, rule_of(rule));
+    each_copy(world, all, threads, work, rule_of(rule));
   });
 }
 
@@ -95,7 +96,7 @@ grelha_status grelha_winding_numbers(const grelha_world* world,
     if (count > 0)
       expect_there(numbers, "numbers");
     const grelha::PointArray all(points, stride, count, "points");
-    each_part(world, all, threads, [&](auto& asked, auto part, auto first, auto& options) {
+    each_copy(world, all, threads, [&](auto& asked, auto part, auto first, auto& options) {
       grelha::winding_numbers(asked, part, {numbers + first, part.size()}, error, options);
     });
   });
@@ -116,7 +117,7 @@ grelha_status grelha_closest_points(const grelha_world* world,
       refuse("radius", "0 or more", std::to_string(radius));
     std::vector<grelha::ClosestPoint> answers;
     const grelha::PointArray all(points, stride, count, "points");
-    each_part(world, all, threads, [&](auto& asked, auto part, auto first, auto& options) {
+    each_copy(world, all, threads, [&](auto& asked, auto part, auto first, auto& options) {
       answers.resize(part.size());
       grelha::closest_points(asked, part, answers, radius, options);
       store(answers, first, found, distance, id);
@@ -139,6 +140,6 @@ grelha_status grelha_signed_distances(const grelha_world* world,
     const auto work = [&](auto& asked, auto part, auto first, auto& options) {
       grelha::signed_distances(asked, part, {distance + first, part.size()}, options);
     };
-    each_part(world, all, threads, work, rule_of(rule));
+    each_copy(world, all, threads, work, rule_of(rule));
   });
 }

@@ -6,9 +6,7 @@
 #include "grelha/all_hits.hpp"
 
 namespace grelha::c {
-namespace {
 
-/// Floats from one element to the next; 0 where all rays share one.
 std::ptrdiff_t floats_of(std::ptrdiff_t stride, std::size_t count, const char* name) {
   constexpr std::ptrdiff_t kSize = sizeof(float);
   if (count <= 1 || stride == GRELHA_SHARED)
@@ -43,6 +41,8 @@ Rays rays_of(const grelha_rays* rays) {
           .dir_stride = floats_of(rays->dir_stride, rays->count, "dir_stride")};
 }
 
+namespace {
+
 constexpr std::size_t kPart = std::size_t{1} << 17;
 
 /// Where a member of each item is stored, if it is wanted.
@@ -58,11 +58,11 @@ struct Column {
 template <class Item, class Member, class To>
 Column(Member Item::*, To*) -> Column<Item, Member, To>;
 
-/// Finds items of many rays a part of them at a time, so that they are in memory twice only in
-/// part. `list(part)` returns a part's items with their offsets, which columns store, and
-/// `count(part, counts)` only counts them.
+/// Finds items of many rays a part of them at a time. `list(part, options)` returns a part's items
+/// with their offsets, which columns store, and `count(part, counts, options)` only counts them.
 template <class List, class Count, class... Columns>
 void list_by_parts(const Rays& rays,
+                   QueryOptions options,
                    std::size_t* offset,
                    std::size_t capacity,
                    const List& list,
@@ -70,22 +70,23 @@ void list_by_parts(const Rays& rays,
                    const Columns&... columns) {
   const bool stores = (columns.to || ...);
   offset[0] = 0;
-  for (std::size_t first = 0; first < rays.count; first += kPart) {
-    const Rays part = rays.part(first, std::min(rays.count, first + kPart));
-    std::size_t* const to = offset + first;
+  each_part(rays.count, kPart, [&](Part range) {
+    const Rays part = rays.part(range.first, range.end);
+    options.progress = progress_of(range);
+    std::size_t* const to = offset + range.first;
     if (stores && to[0] <= capacity) {
-      const auto [offsets, items] = list(part);
+      const auto [offsets, items] = list(part, options);
       for (std::size_t i = 0; i < part.count; ++i)
         to[i + 1] = to[0] + offsets[i + 1];
       if (to[part.count] <= capacity)
         (columns.store(to[0], items), ...);
     } else {
       std::vector<std::uint32_t> counts(part.count);
-      count(part, counts.data());
+      count(part, counts.data(), options);
       for (std::size_t i = 0; i < part.count; ++i)
         to[i + 1] = to[i] + counts[i];
     }
-  }
+  });
   if (stores && offset[rays.count] > capacity)
     throw TooMany("capacity: expected at least " + std::to_string(offset[rays.count]) + ", found " +
                   std::to_string(capacity));
@@ -148,14 +149,14 @@ grelha_status grelha_all_hits(const grelha_world* world,
     const grelha::World& asked = world_of(world);
     const grelha::Rays stream = rays_of(rays);
     expect_there(offset, "offset");
-    const grelha::QueryOptions options = options_of(world, threads);
     list_by_parts(
         stream,
+        options_of(world, threads),
         offset,
         capacity,
-        [&](const grelha::Rays& part) { return grelha::all_hits(asked, part, options); },
-        [&](const grelha::Rays& part, uint32_t* counts) {
-          grelha::count_hits(asked, part, counts, options);
+        [&](const auto& part, const auto& how) { return grelha::all_hits(asked, part, how); },
+        [&](const auto& part, uint32_t* counts, const auto& how) {
+          grelha::count_hits(asked, part, counts, how);
         },
         Column{&grelha::Hit::t, t},
         Column{&grelha::Hit::id, id});
@@ -175,14 +176,14 @@ grelha_status grelha_crossings(const grelha_world* world,
     const grelha::World& asked = world_of(world);
     const grelha::Rays stream = rays_of(rays);
     expect_there(offset, "offset");
-    const grelha::QueryOptions options = options_of(world, threads);
     list_by_parts(
         stream,
+        options_of(world, threads),
         offset,
         capacity,
-        [&](const grelha::Rays& part) { return grelha::crossings(asked, part, options); },
-        [&](const grelha::Rays& part, uint32_t* counts) {
-          grelha::count_crossings(asked, part, counts, options);
+        [&](const auto& part, const auto& how) { return grelha::crossings(asked, part, how); },
+        [&](const auto& part, uint32_t* counts, const auto& how) {
+          grelha::count_crossings(asked, part, counts, how);
         },
         Column{&grelha::Crossing::t, t},
         Column{&grelha::Crossing::id, id},
@@ -200,7 +201,12 @@ grelha_status grelha_each_hit(const grelha_world* world,
     const grelha::Rays stream = rays_of(rays);
     if (!visit)
       refuse("visit", "a function", "null");
+    const auto progress = progress_of();
+    constexpr std::size_t kAsk = 1024;
     for (std::size_t i = 0; i < stream.count; ++i) {
+      if (progress && i % kAsk == 0 &&
+          !progress(static_cast<double>(i) / static_cast<double>(stream.count)))
+        throw grelha::Stopped();
       const auto visit_hit = [&](const grelha::Hit& hit) {
         return visit(context, i, hit.t, hit.id) != 0;
       };

@@ -33,7 +33,7 @@ grelha_status update(grelha_world* world,
                      int threads) noexcept {
   return guarded([&] {
     expect_there(world, "world");
-    world->move({points, stride, count, "points"}, {.threads = expect_threads(threads)});
+    world->move({points, stride, count, "points"}, build_options(threads));
   });
 }
 

@@ -12,7 +12,7 @@ namespace {
 void ask_one_ray(const grelha::World& world) {
   const grelha::Ray ray{{0, 0, 5}, {0, 0, -1}};
   const grelha::Hit hit = grelha::closest(world, ray);
-  const grelha::Float3 up = {0, 1, 0}, from = grelha::surface(world, ray, hit).offset_origin(up);
+  const grelha::Float3 up = {0, 1, 0}, from = grelha::surface(world, ray, hit).start(up);
   std::printf("sphere %u at t = %g, %s\n",
               grelha::primitive_of(world, hit.id).index,
               hit.t,

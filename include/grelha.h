@@ -36,12 +36,13 @@ extern "C" {
 
 /// What became of a call.
 typedef enum grelha_status {
-  GRELHA_OK = 0,         ///< done
-  GRELHA_INVALID = 1,    ///< an argument is wrong: null, out of range, or not a number
-  GRELHA_TOO_MANY = 2,   ///< more primitives than ids, or more hits than there is room for
-  GRELHA_NO_MEMORY = 3,  ///< the memory ran out
-  GRELHA_FAILED = 4,     ///< anything else, for example threads that could not be started
-  GRELHA_NOT_CLOSED = 5  ///< a mesh is not closed, or not oriented, as an inside rule asks
+  GRELHA_OK = 0,          ///< done
+  GRELHA_INVALID = 1,     ///< an argument is wrong: null, out of range, or not a number
+  GRELHA_TOO_MANY = 2,    ///< more primitives than ids, or more hits than there is room for
+  GRELHA_NO_MEMORY = 3,   ///< the memory ran out
+  GRELHA_FAILED = 4,      ///< anything else, for example threads that could not be started
+  GRELHA_NOT_CLOSED = 5,  ///< a mesh is not closed, or not oriented, as an inside rule asks
+  GRELHA_STOPPED = 6      ///< the function of grelha_set_progress() ended it
 } grelha_status;
 
 /// The id where there is no primitive.
@@ -84,12 +85,23 @@ typedef struct grelha_hits {
 /// hits, else another number. It must return: no longjmp.
 typedef int (*grelha_visit)(void* context, size_t ray, float t, uint32_t id);
 
+/// Is called with the fraction done, from 0 to 1. Returns 0 to end the call, else another number.
+/// It must return: no longjmp. It must not call functions that take a world.
+typedef int (*grelha_progress)(void* context, double done);
+
 /// Returns the version of the library, for example "0.1.0".
 GRELHA_API const char* grelha_version(void);
 
 /// Returns one line that says why the last failed call of this thread failed; "" if none did. The
 /// text stays until the next call of this thread fails. It is cut after 255 bytes.
 GRELHA_API const char* grelha_last_error(void);
+
+/// Lets further calls of this thread report how far they are, and end early: functions that take
+/// `threads`, and grelha_each_hit(), call `progress`, each some hundred times a second at most,
+/// from one thread at a time, which need not be the caller's. Where it returns 0 they soon return
+/// GRELHA_STOPPED, and a world that they were changing is as it was. `context` is passed on to it.
+/// Null: calls are not reported, as at first.
+GRELHA_API void grelha_set_progress(grelha_progress progress, void* context);
 
 /// Makes a world of triangles from a copy of the arrays. Stores it in *world, null after an error.
 ///
@@ -219,6 +231,10 @@ GRELHA_API grelha_status grelha_new_meshes(const grelha_mesh* meshes,
                                            int threads,
                                            grelha_world** world);
 
+/// Stores the number of meshes of a world of triangles: 1 unless it was made of several, or some
+/// were added. Fails with GRELHA_INVALID for null.
+GRELHA_API grelha_status grelha_mesh_count(const grelha_world* world, size_t* count);
+
 /// Finds whose triangles [count] ids are: mesh[i] is the number of the mesh, triangle[i] that of
 /// the triangle in it; each may be null. Both are GRELHA_NONE for GRELHA_NONE and for spheres.
 /// Fails with GRELHA_INVALID for null, and for an id that no primitive has.
@@ -237,6 +253,13 @@ GRELHA_API grelha_status grelha_update_mesh(grelha_world* world,
                                             const grelha_mesh* mesh,
                                             int threads);
 
+/// The same of [count] meshes, number numbers[i] by meshes[i], which must differ.
+GRELHA_API grelha_status grelha_update_meshes(grelha_world* world,
+                                              const size_t* numbers,
+                                              const grelha_mesh* meshes,
+                                              size_t count,
+                                              int threads);
+
 /// Appends a mesh to a world of triangles, and stores its number unless the pointer is null.
 /// Numbers and ids of the others stay. With masks, its triangles have 255. Vertices and errors are
 /// those of grelha_update_mesh().
@@ -251,6 +274,12 @@ GRELHA_API grelha_status grelha_set_visible(grelha_world* world,
                                             size_t number,
                                             int visible,
                                             int threads);
+
+/// Takes a mesh out of a world, with its arrays and masks. The numbers of later meshes become less
+/// by one, and the ids of their triangles by the number of its triangles; those before it keep
+/// theirs. Grids of later meshes are built anew. To keep ids, hide it by grelha_set_visible().
+/// Errors are those of grelha_update_mesh().
+GRELHA_API grelha_status grelha_remove_mesh(grelha_world* world, size_t number, int threads);
 
 /// Frees a world. Null is allowed.
 GRELHA_API void grelha_free(grelha_world* world);
@@ -271,6 +300,49 @@ GRELHA_API grelha_status grelha_occluded(const grelha_world* world,
                                          const grelha_rays* rays,
                                          uint8_t* blocked,
                                          int threads);
+
+/// The surface at a hit, or at another place of a primitive.
+typedef struct grelha_surface {
+  float point[3];   ///< computed on the primitive; more accurate than org + t dir
+  float normal[3];  ///< unit length, outwards: to where the vertices are counter-clockwise
+  float offset;     ///< distance along the normal where a point is certainly off the surface
+} grelha_surface;
+
+/// Computes the surfaces where rays hit: surfaces[i] is that of ray i. hits->t and hits->id are
+/// those that grelha_closest() stored for these rays; u and v are not read. Without a hit the point
+/// is NaN, and the normal 0. Errors as for grelha_closest(), and GRELHA_INVALID for an id that no
+/// primitive has.
+GRELHA_API grelha_status grelha_surfaces(const grelha_world* world,
+                                         const grelha_rays* rays,
+                                         const grelha_hits* hits,
+                                         grelha_surface* surfaces,
+                                         int threads);
+
+/// Computes the surfaces at known places of triangles: the points (1 - u - v) a + u b + v c of
+/// triangles a b c, [count] ids, u and v, as grelha_closest() stores them. For GRELHA_NONE the
+/// point is NaN, and the normal 0. Fails with GRELHA_INVALID for null, for an id that is no
+/// triangle, and where u or v is less than 0, or their sum greater than 1, by more than 1e-6.
+GRELHA_API grelha_status grelha_surfaces_at(const grelha_world* world,
+                                            const uint32_t* ids,
+                                            const float* u,
+                                            const float* v,
+                                            size_t count,
+                                            grelha_surface* surfaces,
+                                            int threads);
+
+/// Computes where rays start that leave [count] surfaces: origins[3 i] is the x of the one that
+/// leaves surface i in direction i. Traced with t_min = 0 it does not hit the surface again if it
+/// points away from it, and misses nothing that is farther from it than twice its offset. No
+/// epsilon is needed. A NaN point has a NaN start, and rays from there hit nothing.
+///
+/// Shapes    dir: `count` directions of any length, dir_stride as in grelha_rays. origins:
+///           [count] x y z without gaps.
+/// Errors    GRELHA_INVALID for null, and for a stride that is no multiple of 4.
+GRELHA_API grelha_status grelha_start(const grelha_surface* surfaces,
+                                      size_t count,
+                                      const float* dir,
+                                      ptrdiff_t dir_stride,
+                                      float* origins);
 
 /// Counts the hits of each ray: counts[i] is the number that grelha_all_hits() finds for ray i.
 /// Errors as for grelha_closest().

@@ -80,7 +80,7 @@ class OwningWorld {
   /// Replaces the scene by one where the triangles of some objects moved or were added, or some
   /// objects were hidden or shown, and nothing else changed: World's constructor shares grids of
   /// the others. Masks stay, those of what was added are 255. Throws what that throws, and then
-  /// nothing has changed.
+  /// nothing has changed. Functions of meshes.hpp do the same without a copy of the scene.
   void replace(OffsetScene scene, const BuildOptions& options, std::span<const Object> moved);
   /// Gives each primitive a mask (QueryOptions::mask), or none takes the masks away. Throws
   /// std::invalid_argument for another number.
@@ -91,6 +91,7 @@ class OwningWorld {
   std::span<const std::uint8_t> masks() const { return masks_; }  ///< [primitives], or empty
 
  private:
+  friend class MeshEdit;  // of meshes.cpp
   OffsetScene scene_;
   World world_;
   std::vector<std::uint8_t> masks_;

@@ -110,11 +110,11 @@ struct SurfacePoint {
   /// nothing that is farther from the surface than 2 * `offset`. See docs/numerics.md, after Pharr,
   /// Jakob and Humphreys, PBR 4th ed., 6.8. A shadow ray starts at this origin, its direction is
   /// the light's position minus this origin, and its t_max is 1.
-  Float3 offset_origin(Float3 dir) const;
-  /// The same by its former name, for one version more.
-  [[deprecated("use offset_origin()")]] Float3 leave(Float3 dir) const {
-    return offset_origin(dir);
-  }
+  Float3 start(Float3 dir) const;
+  /// The same by a former name, for one version more.
+  [[deprecated("use start()")]] Float3 offset_origin(Float3 dir) const { return start(dir); }
+  /// The same by a former name, for one version more.
+  [[deprecated("use start()")]] Float3 leave(Float3 dir) const { return start(dir); }
 };
 
 /// Computes the surface point of a `hit` that closest() returned for `ray`. Throws
@@ -132,6 +132,18 @@ void surfaces(const World& world,
 /// that leave a known point of a known primitive, without an epsilon. `shading` is `normal` unless
 /// the triangle has vertex normals. Throws std::invalid_argument if there is no primitive `id`.
 SurfacePoint surface_at(const World& world, std::uint32_t id, Float3 point);
+/// The same of the point (1 - u - v) a + u b + v c of a triangle a b c, see Hits::u. Throws
+/// std::invalid_argument if `id` is no triangle, and if u or v is less than 0, or their sum greater
+/// than 1, by more than 1e-6.
+SurfacePoint surface_at(const World& world, std::uint32_t id, double u, double v);
+/// The same for many places, for example those that closest() found. Ids of kNoPrimitive get a
+/// point of NaN. Throws std::invalid_argument if the lengths differ.
+void surfaces_at(const World& world,
+                 std::span<const std::uint32_t> ids,
+                 std::span<const float> u,
+                 std::span<const float> v,
+                 std::span<SurfacePoint> points,
+                 const QueryOptions& options = {});
 
 /// Returns the kind and index of the primitive with this id. Throws std::invalid_argument if there
 /// is none. Ids count planes first, then spheres, triangles and cones, each kind in the order of

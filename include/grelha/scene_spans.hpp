@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "grelha/geometry.hpp"
@@ -114,11 +115,13 @@ struct SceneSpans {
 /// be in range.
 inline std::vector<char> used_materials(const SceneSpans& scene) {
   std::vector<char> used(scene.materials.size());
+  std::size_t unused = used.size();
   const GeometrySpans& g = scene.geometry;
   for (const Indices& ids :
        {g.spheres.material, g.triangles.material, g.cones.material, g.planes.material})
     for (const std::uint32_t i : ids)
-      used[i] = 1;
+      if (!std::exchange(used[i], 1) && --unused == 0)
+        return used;
   return used;
 }
 

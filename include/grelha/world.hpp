@@ -64,9 +64,9 @@ class World {
   /// The same where the triangles of some objects moved since `before`, new ones stand behind the
   /// others, or some were hidden or shown, and nothing else changed: `moved` names the ranges of
   /// those that moved or are new. Grids over other objects are shared with `before`, not built, if
-  /// they would have the same cells: mostly while the size of the scene stays about the same.
-  /// Objects that moved get grids of their own before others do. Each of the two may outlive the
-  /// other.
+  /// they would have the same cells: mostly while the size of the scene stays about the same. Only
+  /// the indices of what moved are checked. Objects that moved get grids of their own before others
+  /// do. Each of the two may outlive the other.
   World(const SceneSpans& scene,
         const BuildOptions& options,
         const World& before,

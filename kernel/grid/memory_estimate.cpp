@@ -113,7 +113,7 @@ double ids_bytes(const std::vector<std::uint32_t>& ids) {
 double ids_bytes(const Plan& plan) {
   double sum = ids_bytes(plan.apart);
   for (const GridPlan& part : plan.parts)
-    sum += ids_bytes(part.ids);
+    sum += ids_bytes(part.ids.list);
   return sum;
 }
 
@@ -174,8 +174,8 @@ BuildMemory memory_of(const SceneSpans& scene, const Primitives& p, const Plan& 
   m.kept = kMaterial * static_cast<double>(scene.materials.size()) + setup_bytes(p);
   m.waiting = ids_bytes(plan);
   for (const GridPlan& part : plan.parts) {
-    m.add(expected(p, part.ids, part.grid), static_cast<double>(cell_count(part.grid.cells)));
-    m.waiting -= ids_bytes(part.ids);
+    m.add(expected(p, part.ids.list, part.grid), static_cast<double>(cell_count(part.grid.cells)));
+    m.waiting -= ids_bytes(part.ids.list);
   }
   const Lists outside = of_outside(p, plan);
   const double listed = outside.bytes(kListed);

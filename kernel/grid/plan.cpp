@@ -94,9 +94,10 @@ std::vector<std::size_t> objects_apart(std::span<const Object> objects,
 
 /// Groups of ids, one per grid: first what shares one, then objects with one each.
 struct Groups {
-  std::vector<Ids> ids{1};
-  Ids hidden;               ///< of objects that no query finds
+  std::vector<IdGroup> ids{1};
+  IdGroup hidden;           ///< of objects that no query finds
   std::vector<Object> own;  ///< the objects, the favoured first
+  bool all_finite = true;
 };
 
 /// Triangles that are loose, or of small objects, join the first group; larger objects get one
@@ -113,48 +114,50 @@ void group_triangles(const Primitives& p, std::span<const Object> favoured, Grou
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const Object& o = objects[i];
     const std::uint32_t first = first_id + o.first_triangle;
-    append(groups.ids.front(), next, first);
+    groups.ids.front().add({next, first});
     next = first + o.triangle_count;
     if (is_apart[i])
-      reserve_to_fill(groups.ids.emplace_back(), o.triangle_count);
-    append(!o.visible    ? groups.hidden
-           : is_apart[i] ? groups.ids.back()
-                         : groups.ids.front(),
-           first,
-           next);
+      groups.ids.emplace_back();
+    IdGroup& to = !o.visible ? groups.hidden : is_apart[i] ? groups.ids.back() : groups.ids.front();
+    to.add({first, next});
   }
-  append(groups.ids.front(), next, p.ids.end(PrimitiveKind::kTriangle));
+  groups.ids.front().add({next, p.ids.end(PrimitiveKind::kTriangle)});
 }
 
-std::size_t triangles_in_objects(const Primitives& p) {
-  std::size_t sum = 0;
-  for (const Object& o : p.geometry.objects)
-    sum += o.triangle_count;
-  return sum;
+/// Looks at what changed alone, if all was finite before.
+bool still_valid(const Primitives& p, const PlanMemory& before) {
+  if (!before.all_finite)
+    return false;
+  for (const IdRange& range : before.changed)
+    for (std::uint32_t id = range.first; id < range.end; ++id)
+      if (!is_valid(p, id))
+        return false;
+  return true;
 }
 
 /// No ray hits a primitive with numbers that are not finite, and it would leave each cell in doubt.
 void drop_invalid(const Primitives& p, Groups& groups) {
-  if (all_valid(p.geometry))
-    return;
-  const auto drop = [&](Ids& ids) {
-    std::erase_if(ids, [&](std::uint32_t id) { return !is_valid(p, id); });
+  const auto drop = [&](IdGroup& ids) {
+    const std::size_t before = ids.size();
+    ids.list = ids.take_list();
+    std::erase_if(ids.list, [&](std::uint32_t id) { return !is_valid(p, id); });
+    groups.all_finite &= ids.list.size() == before;
   };
   std::ranges::for_each(groups.ids, drop);
   drop(groups.hidden);
 }
 
-Groups group(const Primitives& p, std::span<const Object> favoured) {
+Groups group(const Primitives& p, const PlanMemory& before) {
   Groups groups;
-  reserve_to_fill(groups.ids.front(), p.finite_count() - triangles_in_objects(p));
   for_each_finite_shape([&]<class Shape>() {
     if constexpr (Shape::kKind == PrimitiveKind::kTriangle)
-      group_triangles(p, favoured, groups);
+      group_triangles(p, before.own, groups);
     else
-      append(groups.ids.front(), p.ids.begin(Shape::kKind), p.ids.end(Shape::kKind));
+      groups.ids.front().add({p.ids.begin(Shape::kKind), p.ids.end(Shape::kKind)});
   });
-  drop_invalid(p, groups);
-  std::erase_if(groups.ids, [](const Ids& g) { return g.empty(); });
+  if (!still_valid(p, before) && !all_valid(p.geometry))
+    drop_invalid(p, groups);
+  std::erase_if(groups.ids, [](const IdGroup& g) { return g.empty(); });
   return groups;
 }
 
@@ -210,6 +213,35 @@ Grid grid_over(
 
 }  // namespace
 
+std::size_t IdGroup::size() const {
+  std::size_t sum = list.size();
+  for (const IdRange& range : ranges)
+    sum += range.end - range.first;
+  return sum;
+}
+
+void IdGroup::add(IdRange ids) {
+  if (ids.first == ids.end)
+    return;
+  if (!ranges.empty() && ranges.back().end == ids.first)
+    ranges.back().end = ids.end;
+  else
+    ranges.push_back(ids);
+}
+
+std::vector<std::uint32_t> IdGroup::take_list() {
+  reserve_to_fill(list, size());
+  for (const IdRange& range : std::exchange(ranges, {}))
+    append(list, range.first, range.end);
+  return std::move(list);
+}
+
+std::vector<IdRange> IdGroup::short_ranges() const {
+  if (!list.empty())
+    return ranges_of(list);
+  return ranges.size() > kMostRanges ? std::vector<IdRange>() : ranges;
+}
+
 double pad_of(double near_distance) {
   return near_distance * 256 / 16777216;
 }
@@ -237,7 +269,9 @@ class Planner {
         density_(options.density > 0 ? options.density : kDensity),
         groups_(std::move(groups.ids)) {
     memory_.own = std::move(groups.own);
-    for (const Ids& ids : groups_) {
+    memory_.all_finite = groups.all_finite;
+    lists_all_ = options.most_bytes > 0;  // to estimate the memory
+    for (IdGroup& ids : groups_) {
       extents_.push_back(measure(ids, before));
       plan_.all.add(extents_.back().box);
     }
@@ -265,12 +299,14 @@ class Planner {
   /// Plans grids for groups that are worth one. Clusters that are found join the groups.
   void plan_groups() {
     for (std::size_t i = 0; i < groups_.size(); ++i) {
-      Ids ids = std::move(groups_[i]);
-      const std::size_t all = ids.size();
       if (i < memory_.group_count && memory_.groups[i].grid) {
-        plan_.parts.push_back({std::move(ids), *memory_.groups[i].grid});
+        if (lists_all_)
+          groups_[i].list = groups_[i].take_list();
+        plan_.parts.push_back({std::move(groups_[i]), *memory_.groups[i].grid});
         continue;
       }
+      Ids ids = groups_[i].take_list();
+      const std::size_t all = ids.size();
       const Extent extent = remove_outliers(ids, extents_[i]);
       if (ids.size() <= kFewest && plan_.apart.size() + ids.size() <= kMostOutside)
         append(plan_.apart, ids);
@@ -288,8 +324,8 @@ class Planner {
 
   /// The plan; what no grid was planned for is apart.
   Plan finish() {
-    for (const Ids& ids : groups_)
-      append(plan_.apart, ids);
+    for (IdGroup& ids : groups_)
+      append(plan_.apart, ids.take_list());
     std::sort(plan_.apart.begin(), plan_.apart.end());
     plan_.memory = std::move(memory_);
     return std::move(plan_);
@@ -299,14 +335,16 @@ class Planner {
   static void append(Ids& to, const Ids& ids) { to.insert(to.end(), ids.begin(), ids.end()); }
 
   /// The extent of a group, which did not change where the plan before has it.
-  Extent measure(const Ids& ids, const PlanMemory& before) {
-    PlannedGroup group{ranges_of(ids), {}, {}};
+  Extent measure(IdGroup& ids, const PlanMemory& before) {
+    PlannedGroup group{ids.short_ranges(), {}, {}};
     const auto same = [&](const PlannedGroup& o) { return o.ids == group.ids; };
     const auto at = std::ranges::find_if(before.groups, same);
     if (at != before.groups.end() && !group.ids.empty())
       group = *at;
-    else
-      group.extent = extent_of(p_, ids, threads_);
+    else {
+      ids.list = ids.take_list();
+      group.extent = extent_of(p_, ids.list, threads_);
+    }
     memory_.groups.push_back(std::move(group));
     return memory_.groups.back().extent;
   }
@@ -322,21 +360,22 @@ class Planner {
       return extent;
     for (Ids& cluster : clusters) {
       extents_.push_back(extent_of(p_, cluster, threads_));
-      groups_.push_back(std::move(cluster));
+      groups_.push_back({std::move(cluster), {}});
     }
     return extent_of(p_, ids, threads_);
   }
 
   void plan_group(Ids ids, const Box& box) {
     Grid grid = grid_over(p_, ids, box, density_, memory_.diagonal);
-    plan_.parts.push_back({std::move(ids), std::move(grid)});
+    plan_.parts.push_back({{std::move(ids), {}}, std::move(grid)});
   }
 
   const Primitives& p_;
   const int threads_;
   const double density_;
-  std::vector<Ids> groups_;
+  std::vector<IdGroup> groups_;
   std::vector<Extent> extents_;  ///< of the groups
+  bool lists_all_ = false;
   PlanMemory memory_;
   Plan plan_;
 };
@@ -352,7 +391,7 @@ Plan plan_grids(const Primitives& p,
     progress.throw_if_cancelled();
   };
   progress.expect(kPlanShare, 3);
-  Groups groups = group(p, before.own);
+  Groups groups = group(p, before);
   step();
   Planner planner(p, options, std::move(groups), before);
   planner.expect_size();

@@ -24,8 +24,8 @@ struct IdRange {
 };
 
 /// Ascending ids as ranges, or none if they are too scattered.
+inline constexpr std::size_t kMostRanges = 1024;
 inline std::vector<IdRange> ranges_of(std::span<const std::uint32_t> ids) {
-  constexpr std::size_t kMostRanges = 1024;
   std::vector<IdRange> ranges;
   for (std::size_t i = 0; i < ids.size();) {
     if (ranges.size() == kMostRanges)
@@ -160,9 +160,22 @@ std::vector<std::vector<std::uint32_t>> take_clusters(const Primitives& p,
 
 // Decides which primitives get which grid, and what that will take, before any list is written.
 
+/// Ascending ids: a list, or while that is empty, ranges. Where a scene moves, most groups stay and
+/// need no list, which would take longer than all else.
+struct IdGroup {
+  std::vector<std::uint32_t> list;
+  std::vector<IdRange> ranges;
+
+  bool empty() const { return list.empty() && ranges.empty(); }
+  std::size_t size() const;
+  void add(IdRange ids);                      ///< behind all others, to ranges
+  std::vector<std::uint32_t> take_list();     ///< of all, and forgets them
+  std::vector<IdRange> short_ranges() const;  ///< as ranges_of()
+};
+
 struct GridPlan {
-  std::vector<std::uint32_t> ids;  ///< ascending
-  Grid grid;                       ///< over them, laid out and empty
+  IdGroup ids;
+  Grid grid;  ///< over them, laid out and empty
 };
 
 /// Primitives that are planned together, and what was found of them.
@@ -177,6 +190,8 @@ struct PlanMemory {
   /// Objects that get grids of their own before others do, the first before the next.
   std::vector<Object> own;
   std::vector<PlannedGroup> groups;
+  bool all_finite = false;       ///< no primitive had a number that is not
+  std::vector<IdRange> changed;  ///< ids of primitives that may have one now
   // grids are of use to a plan of as many groups, of this density in a scene of this diagonal
   std::size_t group_count = 0;
   double density = 0, diagonal = 0;

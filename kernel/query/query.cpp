@@ -4,6 +4,7 @@
 #include <limits>
 #include <mutex>
 #include <stdexcept>
+#include <string>
 
 #include "kernel/query/streams.hpp"
 #include "kernel/query/variants.hpp"
@@ -36,6 +37,14 @@ void counted_runs(std::size_t count,
 void expect_primitive(const PrimitiveIds& ids, std::uint32_t id) {
   if (id >= ids.end())
     throw std::invalid_argument("no primitive of this scene has this id");
+}
+
+/// Throws std::invalid_argument for numbers that no point of a triangle has, even rounded.
+void expect_barycentric(double u, double v) {
+  constexpr double kRounded = 1e-6;
+  if (!(u >= -kRounded && v >= -kRounded && u + v <= 1 + kRounded))
+    throw std::invalid_argument("u, v: expected 0 or more, together at most 1, found " +
+                                std::to_string(u) + " and " + std::to_string(v));
 }
 
 scalar::Vec3<float> vec(const Float3& p) {
@@ -153,6 +162,36 @@ SurfacePoint surface_at(const World& world, std::uint32_t id, Float3 point) {
   return surface(world, {float3(org_f), float3(dir_f)}, {1, id});
 }
 
+SurfacePoint surface_at(const World& world, std::uint32_t id, double u, double v) {
+  const World::Impl& w = world.impl();
+  expect_primitive(w.primitives.ids, id);
+  const Primitive primitive = w.primitives.ids.primitive(id);
+  if (primitive.kind != PrimitiveKind::kTriangle)
+    throw std::invalid_argument("id: expected a triangle, found " + std::to_string(id));
+  expect_barycentric(u, v);
+  const TriangleSpans& t = w.scene.geometry.triangles;
+  const std::uint32_t a = t.a[primitive.index], b = t.b[primitive.index], c = t.c[primitive.index];
+  const auto mixed = [&](Floats x) {
+    return static_cast<float>((1 - u - v) * double{x[a]} + u * double{x[b]} + v * double{x[c]});
+  };
+  return surface_at(world, id, {mixed(t.x), mixed(t.y), mixed(t.z)});
+}
+
+void surfaces_at(const World& world,
+                 std::span<const std::uint32_t> ids,
+                 std::span<const float> u,
+                 std::span<const float> v,
+                 std::span<SurfacePoint> points,
+                 const QueryOptions& options) {
+  for (const std::size_t size : {u.size(), v.size(), points.size()})
+    expect_same_size(ids.size(), size, "places");
+  each_run(ids.size(), options, [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i)
+      points[i] =
+          ids[i] == kNoPrimitive ? no_surface() : surface_at(world, ids[i], double{u[i]}, v[i]);
+  });
+}
+
 void surfaces(const World& world,
               std::span<const Ray> rays,
               std::span<const Hit> hits,
@@ -166,7 +205,7 @@ void surfaces(const World& world,
   });
 }
 
-Float3 SurfacePoint::offset_origin(Float3 dir) const {
+Float3 SurfacePoint::start(Float3 dir) const {
   return float3(scalar::offset_origin(vec(point), vec(normal), offset, vec(dir)));
 }
 

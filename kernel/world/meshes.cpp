@@ -1,12 +1,16 @@
 #include "grelha/meshes.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <memory>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "kernel/world/used_points.hpp"
+#include "kernel/world/world_impl.hpp"
 
 namespace grelha {
 namespace {
@@ -139,11 +143,8 @@ bool choose_offset(OffsetScene& scene) {
   return true;
 }
 
-/// Writes vertices of some triangles from a place on, in the scene's frame. Returns what moved.
-Object put_vertices(OffsetScene& scene,
-                    std::size_t first,
-                    const PointArray& vertices,
-                    const Object& triangles) {
+/// Writes vertices from a place on, in the scene's frame.
+void put_vertices(OffsetScene& scene, std::size_t first, const PointArray& vertices) {
   Triangles& t = scene.geometry.triangles;
   if (vertices.in_double && scene.doubles.empty())
     scene.doubles = all_doubles(scene);
@@ -156,9 +157,10 @@ Object put_vertices(OffsetScene& scene,
       if (!scene.doubles.empty())
         scene.doubles[3 * (first + i) + a] = vertices.in_double ? given : given + offset;
     }
-  if (vertices.in_double && choose_offset(scene))
-    return {0, static_cast<std::uint32_t>(t.size())};
-  return triangles;
+}
+
+Object all_triangles(const OffsetScene& scene) {
+  return {0, static_cast<std::uint32_t>(scene.geometry.triangles.size())};
 }
 
 void expect_bare_triangles(const OffsetScene& scene) {
@@ -167,6 +169,31 @@ void expect_bare_triangles(const OffsetScene& scene) {
       !g.triangles.nx.empty() || !g.triangles.red.empty())
     throw std::invalid_argument(
         "scene: expected triangles alone, without materials, normals and colours");
+}
+
+/// The range of a mesh that can be moved so.
+MeshRange checked_range(const OffsetScene& scene, const MeshMove& move) {
+  const MeshRange range = mesh_range(scene, move.mesh);
+  if (move.vertices.count != range.vertex_count)
+    throw std::invalid_argument("count: expected as many vertices as before, " +
+                                std::to_string(range.vertex_count) + ", found " +
+                                std::to_string(move.vertices.count));
+  scene_of(move.vertices, triangles_of_mesh(scene, range));  // to refuse what is not finite
+  return range;
+}
+
+void expect_different(std::span<const MeshMove> moves) {
+  std::set<std::size_t> meshes;
+  for (const MeshMove& move : moves)
+    if (!meshes.insert(move.mesh).second)
+      throw std::invalid_argument("mesh: expected each once, found " + std::to_string(move.mesh) +
+                                  " twice");
+}
+
+template <class Element>
+void erase(std::vector<Element>& array, std::size_t first, std::size_t count) {
+  const auto from = array.begin() + static_cast<std::ptrdiff_t>(first);
+  array.erase(from, from + static_cast<std::ptrdiff_t>(count));
 }
 
 }  // namespace
@@ -217,13 +244,25 @@ MeshRange mesh_range(const OffsetScene& scene, std::size_t mesh) {
 }
 
 Object move_mesh(OffsetScene& scene, std::size_t mesh, const PointArray& vertices) {
-  const MeshRange range = mesh_range(scene, mesh);
-  if (vertices.count != range.vertex_count)
-    throw std::invalid_argument("count: expected as many vertices as before, " +
-                                std::to_string(range.vertex_count) + ", found " +
-                                std::to_string(vertices.count));
-  scene_of(vertices, triangles_of_mesh(scene, range));  // to refuse what is not finite
-  return put_vertices(scene, range.first_vertex, vertices, range.triangles);
+  const MeshMove move{mesh, vertices};
+  return move_meshes(scene, {&move, 1}).front();
+}
+
+std::vector<Object> move_meshes(OffsetScene& scene, std::span<const MeshMove> moves) {
+  std::vector<MeshRange> ranges;
+  for (const MeshMove& move : moves)
+    ranges.push_back(checked_range(scene, move));
+  expect_different(moves);
+  std::vector<Object> moved;
+  bool in_double = false;
+  for (std::size_t i = 0; i < moves.size(); ++i) {
+    put_vertices(scene, ranges[i].first_vertex, moves[i].vertices);
+    moved.push_back(ranges[i].triangles);
+    in_double |= moves[i].vertices.in_double;
+  }
+  if (in_double && choose_offset(scene))
+    moved = {all_triangles(scene)};
+  return moved;
 }
 
 void show_mesh(OffsetScene& scene, std::size_t mesh, bool visible) {
@@ -241,7 +280,184 @@ Object add_mesh(OffsetScene& scene, const MeshArrays& mesh) {
   Triangles& t = scene.geometry.triangles;
   for (std::vector<float>* const axis : {&t.x, &t.y, &t.z})
     axis->resize(first + mesh.vertices.count);
-  return put_vertices(scene, first, mesh.vertices, added);
+  put_vertices(scene, first, mesh.vertices);
+  return mesh.vertices.in_double && choose_offset(scene) ? all_triangles(scene) : added;
+}
+
+Object remove_mesh(OffsetScene& scene, std::size_t mesh) {
+  expect_bare_triangles(scene);
+  const MeshRange range = mesh_range(scene, mesh);
+  name_meshes(scene);
+  Triangles& t = scene.geometry.triangles;
+  const Object& gone = range.triangles;
+  for (std::vector<std::uint32_t>* const corner : {&t.a, &t.b, &t.c}) {
+    erase(*corner, gone.first_triangle, gone.triangle_count);
+    for (std::size_t i = gone.first_triangle; i < corner->size(); ++i)
+      (*corner)[i] -= range.vertex_count;
+  }
+  for (std::vector<float>* const axis : {&t.x, &t.y, &t.z})
+    erase(*axis, range.first_vertex, range.vertex_count);
+  if (!scene.doubles.empty())
+    erase(scene.doubles, 3 * std::size_t{range.first_vertex}, 3 * std::size_t{range.vertex_count});
+  erase(scene.geometry.objects, mesh, 1);
+  erase(scene.first_vertices, mesh, 1);
+  for (std::size_t i = mesh; i < scene.first_vertices.size(); ++i)
+    scene.first_vertices[i] -= range.vertex_count;
+  for (std::size_t i = mesh; i < scene.geometry.objects.size(); ++i)
+    scene.geometry.objects[i].first_triangle -= gone.triangle_count;
+  if (!scene.doubles.empty() && choose_offset(scene))
+    return all_triangles(scene);
+  return {gone.first_triangle, static_cast<std::uint32_t>(t.size()) - gone.first_triangle};
+}
+
+/// A change of the scene that a World refers to, in place. Without commit() it is undone.
+class MeshEdit {
+ public:
+  explicit MeshEdit(OwningWorld& owner) : scene(owner.scene_), owner_(owner) {}
+  MeshEdit(const MeshEdit&) = delete;
+  ~MeshEdit() {
+    if (undo)
+      undo();
+  }
+
+  /// Builds anew what moved.
+  void commit(const BuildOptions& options, std::span<const Object> moved) {
+    owner_.world_.update(scene, options, moved);
+    undo = nullptr;
+    if (!owner_.masks_.empty())
+      owner_.masks_.resize(owner_.world_.impl().primitives.ids.end(), 255);
+  }
+
+  /// Takes a scene with other triangles, and masks of theirs.
+  void replace(OffsetScene next,
+               std::vector<std::uint8_t> masks,
+               const BuildOptions& options,
+               const Object& moved) {
+    owner_.replace(std::move(next), options, {&moved, 1});
+    owner_.masks_ = std::move(masks);
+  }
+
+  OffsetScene& scene;
+  std::function<void()> undo;
+
+ private:
+  OwningWorld& owner_;
+};
+
+namespace {
+
+/// Coordinates of meshes before they move.
+class MovedVertices {
+ public:
+  MovedVertices(const OffsetScene& scene, std::span<const MeshMove> moves) {
+    for (const MeshMove& move : moves) {
+      const MeshRange range = mesh_range(scene, move.mesh);
+      const Triangles& t = scene.geometry.triangles;
+      for (const std::vector<float>* const axis : {&t.x, &t.y, &t.z}) {
+        const auto from = axis->begin() + range.first_vertex;
+        before_.emplace_back(from, from + range.vertex_count);
+      }
+      first_.push_back(range.first_vertex);
+    }
+  }
+  void restore(OffsetScene& scene) const {
+    Triangles& t = scene.geometry.triangles;
+    std::vector<float>* const axes[3] = {&t.x, &t.y, &t.z};
+    for (std::size_t i = 0; i < before_.size(); ++i)
+      std::ranges::copy(before_[i], axes[i % 3]->begin() + first_[i / 3]);
+  }
+
+ private:
+  std::vector<std::vector<float>> before_;  ///< x, y and z of each
+  std::vector<std::uint32_t> first_;
+};
+
+/// Gives arrays room for more, mostly for as much again. A World may go on reading what they had:
+/// it stays in memory as long as this, and undo() gives it back.
+class GrownArrays {
+ public:
+  template <class Element>
+  void grow(std::vector<Element>& array, std::size_t more) {
+    auto before = std::make_shared<std::vector<Element>>();
+    const std::size_t size = array.size();
+    if (size + more > array.capacity()) {
+      std::vector<Element> larger;
+      larger.reserve(std::max(size + more, 2 * size));
+      larger.assign(array.begin(), array.end());
+      *before = std::exchange(array, std::move(larger));
+    }
+    undo_.push_back([&array, before, size] {
+      if (before->empty())
+        array.resize(size);
+      else
+        array.swap(*before);
+    });
+  }
+  void undo() const {
+    for (const auto& one : undo_)
+      one();
+  }
+
+ private:
+  std::vector<std::function<void()>> undo_;
+};
+
+bool any_in_double(std::span<const MeshMove> moves) {
+  return std::ranges::any_of(moves, [](const MeshMove& move) { return move.vertices.in_double; });
+}
+
+}  // namespace
+
+void move_meshes(OwningWorld& world, std::span<const MeshMove> moves, const BuildOptions& options) {
+  if (any_in_double(moves) || !world.scene().doubles.empty()) {  // all may be rounded anew
+    OffsetScene scene = world.scene();
+    const std::vector<Object> moved = move_meshes(scene, moves);
+    world.replace(std::move(scene), options, moved);
+    return;
+  }
+  const MovedVertices before(world.scene(), moves);
+  MeshEdit edit(world);
+  edit.undo = [&] { before.restore(edit.scene); };
+  edit.commit(options, move_meshes(edit.scene, moves));
+}
+
+void show_mesh(OwningWorld& world, std::size_t mesh, bool visible, const BuildOptions& options) {
+  const bool before = mesh_range(world.scene(), mesh).triangles.visible;
+  MeshEdit edit(world);
+  edit.undo = [&] { show_mesh(edit.scene, mesh, before); };
+  show_mesh(edit.scene, mesh, visible);
+  edit.commit(options, {});
+}
+
+void add_mesh(OwningWorld& world, const MeshArrays& mesh, const BuildOptions& options) {
+  if (mesh.vertices.in_double || !world.scene().doubles.empty()) {  // all may be rounded anew
+    OffsetScene scene = world.scene();
+    const Object moved = add_mesh(scene, mesh);
+    world.replace(std::move(scene), options, {&moved, 1});
+    return;
+  }
+  GrownArrays grown;
+  MeshEdit edit(world);
+  Triangles& t = edit.scene.geometry.triangles;
+  edit.undo = [&] { grown.undo(); };
+  for (std::vector<float>* const axis : {&t.x, &t.y, &t.z})
+    grown.grow(*axis, mesh.vertices.count);
+  for (std::vector<std::uint32_t>* const corner : {&t.a, &t.b, &t.c})
+    grown.grow(*corner, mesh.faces.size());
+  grown.grow(edit.scene.geometry.objects, 2);
+  grown.grow(edit.scene.first_vertices, 3);
+  const Object added = add_mesh(edit.scene, mesh);
+  edit.commit(options, {&added, 1});
+}
+
+void remove_mesh(OwningWorld& world, std::size_t mesh, const BuildOptions& options) {
+  const MeshRange gone = mesh_range(world.scene(), mesh);
+  std::vector<std::uint8_t> masks(world.masks().begin(), world.masks().end());
+  if (!masks.empty())
+    erase(masks, gone.triangles.first_triangle, gone.triangles.triangle_count);
+  OffsetScene scene = world.scene();
+  const Object behind = remove_mesh(scene, mesh);
+  MeshEdit(world).replace(std::move(scene), std::move(masks), options, behind);
 }
 
 }  // namespace grelha

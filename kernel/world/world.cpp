@@ -28,7 +28,26 @@ void check(const BuildOptions& o) {
     throw std::invalid_argument("threads must not be negative");
 }
 
-void check(const SceneSpans& scene) {
+/// Throws std::invalid_argument if triangles of a range name what is not there.
+void check_indices(const SceneSpans& scene, std::size_t first, std::size_t count) {
+  const TriangleSpans& t = scene.geometry.triangles;
+  if (beyond(t.material.subspan(first, count), scene.materials.size()))
+    throw std::invalid_argument("a primitive names a material that is not there");
+  for (const Indices& corner : {t.a, t.b, t.c})
+    if (beyond(corner.subspan(first, count), t.vertex_count()))
+      throw std::invalid_argument("a triangle names a vertex that is not there");
+}
+
+void check_all_indices(const SceneSpans& scene) {
+  for_each_shape([&]<class Shape>() {
+    if (beyond(Shape::spans_of(scene.geometry).material, scene.materials.size()))
+      throw std::invalid_argument("a primitive names a material that is not there");
+  });
+  check_indices(scene, 0, scene.geometry.triangles.size());
+}
+
+/// Looks at what moved since a scene `before` alone, unless there are fewer things to name.
+void check(const SceneSpans& scene, const SceneSpans* before, std::span<const Object> moved) {
   const GeometrySpans& g = scene.geometry;
   std::size_t total = 0;
   for_each_shape([&]<class Shape>() {
@@ -39,19 +58,27 @@ void check(const SceneSpans& scene) {
   });
   if (total >= kNoPrimitive)
     throw std::invalid_argument("more primitives than ids: at most 4294967294");
-  for_each_shape([&]<class Shape>() {
-    if (beyond(Shape::spans_of(g).material, scene.materials.size()))
-      throw std::invalid_argument("a primitive names a material that is not there");
-  });
-  const auto vertices = g.triangles.vertex_count();
-  for (const auto* v : {&g.triangles.a, &g.triangles.b, &g.triangles.c})
-    if (beyond(*v, vertices))
-      throw std::invalid_argument("a triangle names a vertex that is not there");
   expect_objects(g);
+  for (const Object& o : moved)
+    if (std::uint64_t{o.first_triangle} + o.triangle_count > g.triangles.size())
+      throw std::invalid_argument("what moved names a triangle that is not there");
+  if (!before || before->materials.size() > scene.materials.size() ||
+      before->geometry.triangles.vertex_count() > g.triangles.vertex_count()) {
+    check_all_indices(scene);
+    return;
+  }
+  for (const Object& o : moved)
+    check_indices(scene, o.first_triangle, o.triangle_count);
 }
 
-/// The scene with indices of materials, `zeros` where the caller gave none, checked.
-SceneSpans completed(SceneSpans scene, std::vector<std::uint32_t>& zeros) {
+using SharedIds = std::shared_ptr<const std::vector<std::uint32_t>>;
+
+/// The scene with indices of materials, `zeros` where the caller gave none, checked: what moved
+/// since `before`, if that is not null.
+SceneSpans completed(SceneSpans scene,
+                     SharedIds& zeros,
+                     const SceneSpans* before = nullptr,
+                     std::span<const Object> moved = {}) {
   static constexpr Material kGrey{.diffuse = {.8f, .8f, .8f}};
   GeometrySpans& g = scene.geometry;
   std::size_t most = 0;
@@ -59,16 +86,17 @@ SceneSpans completed(SceneSpans scene, std::vector<std::uint32_t>& zeros) {
     if (Shape::spans_of(g).material.empty())
       most = std::max(most, Shape::spans_of(g).size());
   });
-  zeros.resize(most);
+  if (!zeros || zeros->size() < most)  // twice as many for what is added to a world
+    zeros = std::make_shared<std::vector<std::uint32_t>>(before ? 2 * most : most);
   for_each_shape([&]<class Shape>() {
     auto& spans =
         const_cast<std::remove_cvref_t<decltype(Shape::spans_of(g))>&>(Shape::spans_of(g));
     if (spans.material.empty())
-      spans.material = std::span(zeros).first(spans.size());
+      spans.material = std::span(*zeros).first(spans.size());
   });
   if (scene.materials.empty())
     scene.materials = std::span(&kGrey, 1);
-  check(scene);
+  check(scene, before, moved);
   return scene;
 }
 
@@ -78,7 +106,8 @@ World::Impl::Impl(const SceneSpans& s,
                   const BuildOptions& options,
                   const Impl* before,
                   std::span<const Object> moved)
-    : scene(completed(s, default_material_ids)),
+    : default_material_ids(before ? before->default_material_ids : nullptr),
+      scene(completed(s, default_material_ids, before ? &before->scene : nullptr, moved)),
       primitives(scene.geometry),
       materials(scene),
       lights(scene.lights, scene.background) {
@@ -175,9 +204,9 @@ std::vector<IdRange> World::Impl::ids_of(std::span<const Object> objects) const 
 PlanMemory World::Impl::memory_of_unmoved(std::span<const Object> moved) const {
   PlanMemory kept = planned;
   kept.own.insert(kept.own.begin(), moved.begin(), moved.end());
-  std::erase_if(kept.groups, [ids = ids_of(moved)](const PlannedGroup& group) {
-    return overlap(group.ids, ids);
-  });
+  kept.changed = ids_of(moved);
+  std::erase_if(kept.groups,
+                [&](const PlannedGroup& group) { return overlap(group.ids, kept.changed); });
   return kept;
 }
 
@@ -215,13 +244,13 @@ void World::Impl::fill(Plan& plan,
   for (const GridPlan& part : plan.parts)
     work += static_cast<double>(part.ids.size());
   for (GridPlan& part : plan.parts) {
-    const std::vector<std::uint32_t> ids = std::move(part.ids);
     progress.throw_if_cancelled();
-    BuiltGrid built{std::move(part.grid), ranges_of(ids)};
+    BuiltGrid built{std::move(part.grid), part.ids.short_ranges()};
     SharedGrid shared;
     if (before && !overlap(built.ids, moved))
       shared = before->find_same(built);
     if (!shared) {
+      const std::vector<std::uint32_t> ids = part.ids.take_list();
       const double share = (1 - kPlanShare) * static_cast<double>(ids.size()) / work;
       fill_grid(primitives, ids, built.grid, threads, progress, share);
       shared = std::make_shared<const BuiltGrid>(std::move(built));
@@ -231,7 +260,7 @@ void World::Impl::fill(Plan& plan,
 }
 
 BuildMemory World::estimate(const SceneSpans& scene, const BuildOptions& options) {
-  std::vector<std::uint32_t> zeros;
+  SharedIds zeros;
   const SceneSpans whole = completed(scene, zeros);
   check(options);
   const Primitives primitives(whole.geometry);

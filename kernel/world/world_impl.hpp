@@ -44,7 +44,8 @@ struct BuiltGrid {
 };
 
 struct World::Impl {
-  std::vector<std::uint32_t> default_material_ids;  ///< zeros, for kinds without material indices
+  /// zeros, for kinds without material indices; at least as many as the largest of them has
+  std::shared_ptr<const std::vector<std::uint32_t>> default_material_ids;
   SceneSpans scene;
   Primitives primitives;
   std::vector<std::shared_ptr<const BuiltGrid>> grids;   ///< an update may share some

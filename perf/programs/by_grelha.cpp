@@ -16,7 +16,7 @@ std::vector<float> ambient_occlusion(const Mesh& mesh) {
     const SurfacePoint at = surface_at(world, face, mesh.center(face));
     for (std::size_t k = 0; k < kRaysPerFace; ++k) {
       const Float3 dir = at.normal + .999f * on_sphere(rays.size());
-      rays.push_back({at.offset_origin(dir), dir});
+      rays.push_back({at.start(dir), dir});
     }
   }
   std::vector<std::uint8_t> blocked(rays.size());
@@ -49,7 +49,7 @@ static float radiance(const World& world, Ray ray, std::uint64_t number) {
     const SurfacePoint at = surface(world, ray, hit);
     const Float3 normal = dot(at.normal, ray.dir) < 0 ? at.normal : -1 * at.normal;
     const Float3 dir = normal + .999f * on_sphere(number * kBounces + bounce);
-    ray = {at.offset_origin(dir), dir};
+    ray = {at.start(dir), dir};
   }
   return 0;
 }

@@ -14,15 +14,6 @@ void share(Shape& shape, const Shape& with, const char* name) {
     wrong_value(name, "a shape that broadcasts with " + text_of(shape), text_of(with));
 }
 
-/// A point of a face by its barycentric coordinates, computed in double.
-Float3 point_on(const Triangles& t, std::size_t face, double u, double v) {
-  const auto on = [&](const std::vector<float>& x) {
-    return as_float((1 - u - v) * double{x[t.a[face]]} + u * double{x[t.b[face]]} +
-                    v * double{x[t.c[face]]});
-  };
-  return {on(t.x), on(t.y), on(t.z)};
-}
-
 void expect_on_faces(const std::vector<double>& u, const std::vector<double>& v) {
   constexpr double kRounded = 1e-6;  // of the u and v of hits, which are float32
   for (std::size_t i = 0; i < u.size(); ++i)
@@ -52,11 +43,9 @@ std::vector<Float3> origins_of(const Model& model, const Starts& starts, const P
   for (std::size_t i = 0; i < origins.size(); ++i) {
     if (i % kAsk == 0 && !progress(double(i) / double(origins.size())))
       throw Stopped();
-    const Float3 point =
-        point_on(model.geometry().triangles, starts.face[i], starts.u[i], starts.v[i]);
-    const SurfacePoint surface =
-        surface_at(model.world(), model.first_triangle() + starts.face[i], point);
-    origins[i] = surface.offset_origin(starts.direction(i));
+    const std::uint32_t id = model.first_triangle() + starts.face[i];
+    const SurfacePoint surface = surface_at(model.world(), id, starts.u[i], starts.v[i]);
+    origins[i] = surface.start(starts.direction(i));
   }
   return origins;
 }

@@ -265,3 +265,77 @@ void test_mesh_errors(void) {
   CHECK_ERROR(grelha_set_visible(ball, 0, 0, 1), GRELHA_INVALID, "world: ");
   grelha_free(ball);
 }
+
+/// Cubes in a row, 4 apart.
+static void new_row(grelha_world** world, int from, int count) {
+  float corners[4][3 * kCorners];
+  grelha_mesh cubes[4];
+  for (int i = 0; i < count; ++i) {
+    cubes[i] = cube_mesh();
+    cubes[i].vertices = corners[i];
+    for (int k = 0; k < 3 * kCorners; ++k)
+      corners[i][k] = cube_corners[k] + (k % 3 == 0 ? 4.f * (float)(from + i) : 0);
+  }
+  CHECK_OK(grelha_new_meshes(cubes, (size_t)count, 1, world));
+}
+
+/// Ids, numbers and masks of those behind move up, and what comes after takes their place.
+void test_removals(void) {
+  grelha_world* world = NULL;
+  uint8_t masks[4 * kFaces];
+  float t = 0;
+  size_t count = 0;
+  new_row(&world, 0, 4);
+  for (int i = 0; i < 4 * kFaces; ++i)
+    masks[i] = i / kFaces == 2 ? 1 : 2;
+  CHECK_OK(grelha_set_masks(world, masks, 4 * kFaces));
+  CHECK_OK(grelha_mesh_count(world, &count));
+  CHECK(count == 4 && mesh_below(world, 8.25f, .5f, &t) == 2);
+  CHECK_OK(grelha_remove_mesh(world, 1, 1));
+  CHECK_OK(grelha_mesh_count(world, &count));
+  CHECK(count == 3 && mesh_below(world, 8.25f, .5f, &t) == 1 && t == 8);
+  CHECK(mesh_below(world, 4.25f, .5f, &t) == GRELHA_NONE && mesh_below(world, 12, .5f, &t) == 2);
+  const float org[] = {8.25f, .5f, 9}, down[] = {0, 0, -1};
+  const uint8_t second = 2;
+  uint32_t id = 0;
+  grelha_rays ray = one_ray(org, down);
+  ray.mask = &second;
+  CHECK_OK(grelha_closest(world, &ray, &(grelha_hits){.id = &id}, 1));
+  CHECK(id == GRELHA_NONE);
+  const grelha_mesh cube = cube_mesh();
+  CHECK_OK(grelha_add_mesh(world, &cube, 1, &count));
+  CHECK(count == 3);
+  for (int i = 0; i < 4; ++i)
+    CHECK_OK(grelha_remove_mesh(world, 0, 1));
+  CHECK_OK(grelha_mesh_count(world, &count));
+  CHECK(count == 0 && mesh_below(world, 0, .5f, &t) == GRELHA_NONE);
+  CHECK_ERROR(grelha_remove_mesh(world, 0, 1), GRELHA_INVALID, "mesh: expected less than 0");
+  CHECK_ERROR(grelha_remove_mesh(NULL, 0, 1), GRELHA_INVALID, "world: ");
+  CHECK_ERROR(grelha_mesh_count(world, NULL), GRELHA_INVALID, "count: ");
+  CHECK_ERROR(grelha_mesh_count(NULL, &count), GRELHA_INVALID, "world: ");
+  grelha_free(world);
+  // a mesh alone in its world
+  world = new_cube();
+  CHECK_OK(grelha_remove_mesh(world, 0, 1));
+  CHECK_OK(grelha_mesh_count(world, &count));
+  CHECK(count == 0 && mesh_below(world, 0, .5f, &t) == GRELHA_NONE);
+  grelha_free(world);
+  // many at once
+  float up[2][3 * kCorners];
+  grelha_mesh moved[] = {cube_mesh(), cube_mesh()};
+  const size_t numbers[] = {2, 0}, twice[] = {2, 2};
+  new_row(&world, 0, 4);
+  for (int i = 0; i < 6 * kCorners; ++i)
+    up[i / 24][i % 24] = cube_corners[i % 24] + (float)(i % 3 == 2 ? 5 : 20 * (i / 24));
+  moved[0].vertices = up[0];
+  moved[1].vertices = up[1];
+  CHECK_OK(grelha_update_meshes(world, numbers, moved, 2, 1));
+  CHECK(mesh_below(world, .25f, .5f, &t) == 2 && mesh_below(world, 4.25f, .5f, &t) == 1);
+  CHECK_OK(grelha_update_meshes(world, NULL, NULL, 0, 1));
+  CHECK_ERROR(grelha_update_meshes(world, twice, moved, 2, 1),
+              GRELHA_INVALID,
+              "mesh: expected each once, found 2 twice");
+  CHECK_ERROR(grelha_update_meshes(world, NULL, moved, 2, 1), GRELHA_INVALID, "numbers: ");
+  CHECK_ERROR(grelha_update_meshes(world, numbers, NULL, 2, 1), GRELHA_INVALID, "mesh: ");
+  grelha_free(world);
+}

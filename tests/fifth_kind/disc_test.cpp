@@ -115,7 +115,7 @@ TEST(Disc, IsLeftByRaysThatStartOnIt) {
       continue;
     const SurfacePoint at = surface(world, ray, hit);
     const Float3 d = random.direction();
-    ASSERT_NE(closest(world, Ray{at.offset_origin(d), d}).id, hit.id) << "ray " << i;
+    ASSERT_NE(closest(world, Ray{at.start(d), d}).id, hit.id) << "ray " << i;
     ++left;
   }
   EXPECT_GT(left, 1000);

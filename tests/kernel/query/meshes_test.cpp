@@ -295,6 +295,127 @@ TEST(Meshes, InDoubleAreRoundedAsInANewWorld) {
   expect_same(again, together(back[0], back[1]));
 }
 
+/// Whether two Worlds give the same bits.
+void expect_same_hits(const World& a, const World& b, Random& random, std::uint64_t run) {
+  for (int i = 0; i < 40; ++i) {
+    const Float3 p = random.point(6), way = random.direction();
+    const Hit x = closest(a, {p, way}), y = closest(b, {p, way});
+    ASSERT_EQ(x.id, y.id) << "run " << run;
+    ASSERT_EQ(x.t, y.t) << "run " << run;
+    const ClosestPoint near = closest_point(a, p), other = closest_point(b, p);
+    ASSERT_EQ(near.id, other.id) << "run " << run;
+    ASSERT_EQ(near.point, other.point) << "run " << run;
+  }
+}
+
+/// Meshes that come, move, hide and go at random, and the same in a list of ours.
+class RandomChanges {
+ public:
+  explicit RandomChanges(std::uint64_t run) : random_(run), world_(joined({}), {}) {}
+
+  void change() {
+    const std::size_t count = meshes_.size();
+    const std::size_t some = random_.below(static_cast<std::uint32_t>(count) + 1);
+    if (some == count || (count < 3 && random_.below(2) == 0))
+      add();
+    else if (const std::uint32_t kind = random_.below(5); kind == 0)
+      remove(some);
+    else if (kind < 3)
+      move(some);
+    else
+      show(some, kind == 3);
+  }
+  void expect_same(std::uint64_t run) {
+    OffsetScene scene = joined(meshes_);
+    for (std::size_t i = 0; i < meshes_.size(); ++i)
+      show_mesh(scene, i, visible_[i]);
+    expect_same_hits(world_.world(), World(scene, {}), random_, run);
+    ASSERT_EQ(mesh_count(world_.scene()), meshes_.size());
+    ASSERT_EQ(world_.scene().geometry.triangles.size(), scene.geometry.triangles.size());
+  }
+
+ private:
+  Float3 place() { return random_.point(4); }
+  void add() {
+    const bool is_large = random_.below(2) == 0;  // enough for a grid of its own
+    const int sides = is_large ? 16 : 5, seed = static_cast<int>(random_.below(9));
+    meshes_.push_back(mesh_of(ball_mesh(sides, 10, .1, static_cast<std::uint64_t>(seed)), place()));
+    visible_.push_back(true);
+    add_mesh(world_, meshes_.back().arrays(), {});
+  }
+  void remove(std::size_t mesh) {
+    const auto at = static_cast<std::ptrdiff_t>(mesh);
+    meshes_.erase(meshes_.begin() + at);
+    visible_.erase(visible_.begin() + at);
+    remove_mesh(world_, mesh, {});
+  }
+  void move(std::size_t mesh) {
+    std::vector<MeshMove> moves;
+    for (std::size_t i = mesh; i < meshes_.size() && i < mesh + 2; ++i) {
+      const Float3 by = .25f * place();
+      for (Float3& v : meshes_[i].vertices)
+        v = v + by;
+      moves.push_back({i, PointArray(std::span(meshes_[i].vertices))});
+    }
+    move_meshes(world_, moves, {});
+  }
+  void show(std::size_t mesh, bool visible) {
+    visible_[mesh] = visible;
+    show_mesh(world_, mesh, visible, {});
+  }
+
+  Random random_;
+  std::vector<Mesh> meshes_;
+  std::vector<bool> visible_;
+  OwningWorld world_;
+};
+
+TEST(Meshes, ThatChangeAtRandomAreThoseOfANewWorld) {
+  for (std::uint64_t run = 0; run < 200 && !HasFailure(); ++run) {
+    RandomChanges changes(run);
+    for (int step = 0; step < 12; ++step) {
+      changes.change();
+      changes.expect_same(run);
+    }
+  }
+}
+
+/// Whatever a build that is stopped began, the World and its scene are as before.
+TEST(Meshes, StayWhereABuildIsStopped) {
+  const std::vector<Mesh> meshes = row_of_balls(3);
+  const BuildOptions stopped{.progress = [](double) { return false; }};
+  OwningWorld world(joined(meshes), {});
+  const OffsetScene before = world.scene();
+  const std::vector<Float3> flat(meshes[2].vertices.size(), Float3{1, 2, 3});
+  const MeshMove move{2, PointArray(std::span(flat))};
+  for (int again = 0; again < 2; ++again) {
+    EXPECT_THROW(move_meshes(world, {&move, 1}, stopped), Stopped);
+    EXPECT_THROW(show_mesh(world, 0, false, stopped), Stopped);
+    EXPECT_THROW(remove_mesh(world, 0, stopped), Stopped);
+    EXPECT_THROW(add_mesh(world, meshes[0].arrays(), stopped), Stopped);
+    EXPECT_EQ(world.scene().geometry.triangles.x, before.geometry.triangles.x);
+    EXPECT_EQ(world.scene().geometry.triangles.a, before.geometry.triangles.a);
+    EXPECT_EQ(world.scene().first_vertices, before.first_vertices);
+    EXPECT_TRUE(mesh_range(world.scene(), 0).triangles.visible);
+    expect_same_answers(world.world(), World(before, {}));
+    const MeshMove same{0, PointArray(std::span(meshes[0].vertices))};
+    move_meshes(world, {&same, 1}, {});
+  }
+}
+
+/// Where one of two goes, the offset is that of a new World.
+TEST(Meshes, InDoubleThatAreRemovedLeaveTheOffsetOfTheRest) {
+  const std::vector<std::array<std::uint32_t, 3>> faces = {{0, 1, 2}, {0, 2, 3}};
+  const std::vector<double> near = square(.1, .2), far = square(4e6 + .1, .3);
+  OwningWorld world(
+      scene_of(std::vector<MeshArrays>{{points_of(near), faces}, {points_of(far), faces}}), {});
+  remove_mesh(world, 0, {});
+  const OffsetScene rest = scene_of(std::vector<MeshArrays>{{points_of(far), faces}});
+  EXPECT_EQ(world.scene().offset, rest.offset);
+  EXPECT_EQ(world.scene().geometry.triangles.x, rest.geometry.triangles.x);
+  EXPECT_TRUE(same_grids(world.world(), World(rest, {})));
+}
+
 template <class Work>
 std::string refusal(const Work& work) {
   try {

@@ -182,7 +182,7 @@ TEST(Query, RaysThatLeaveASurfaceDoNotMeetItAgain) {
         continue;  // rounding decides which side it points to
       if (side < 0)
         d = scaled(d, -1);
-      const Hit again = closest(world, Ray{s.offset_origin(d), d});
+      const Hit again = closest(world, Ray{s.start(d), d});
       ASSERT_FALSE(again && again.id == hit.id)
           << rays.describe(i) << ", id " << hit.id << ", t " << again.t;
     }
@@ -210,8 +210,8 @@ TEST(Query, SurfacesAreWhatTheCallerBuilt) {
   EXPECT_EQ(ball.normal, (Float3{0, 0, 1}));
   EXPECT_EQ(ball.shading, ball.normal);
   EXPECT_EQ(ball.material, 1u);
-  EXPECT_GT(ball.offset_origin({0, 1, 1}).z, 2.f);
-  EXPECT_LT(ball.offset_origin({0, 1, -1}).z, 2.f);
+  EXPECT_GT(ball.start({0, 1, 1}).z, 2.f);
+  EXPECT_LT(ball.start({0, 1, -1}).z, 2.f);
   EXPECT_EQ(triangle.normal, (Float3{0, 0, 1}));
   // a product, a sum, a root, a quotient: four roundings of .6
   EXPECT_NEAR(triangle.shading.x, .6, 4 * oracle::kEps);

@@ -334,7 +334,7 @@ TEST(SurfaceAt, LetsRaysLeave) {
       continue;
     if (primitive.kind == PrimitiveKind::kSphere && s.geometry.spheres.radius[primitive.index] < 0)
       continue;
-    for (const Hit& hit : all_hits(world, {at.offset_origin(to), to}))
+    for (const Hit& hit : all_hits(world, {at.start(to), to}))
       ASSERT_NE(hit.id, id) << "kind " << static_cast<int>(primitive.kind) << " ray " << i;
   }
   EXPECT_THROW(surface_at(world, count, {}), std::invalid_argument);
@@ -351,7 +351,7 @@ TEST(SurfaceAt, OfABallThatShowsItsInsideIsWhereThePointIs) {
   }
   const SurfacePoint at = surface_at(world, 0, {9, 2, 3});
   const Float3 inwards{-1, 0, 0};
-  EXPECT_NEAR(closest(world, Ray{at.offset_origin(inwards), inwards}).t, 4, 1e-5);
+  EXPECT_NEAR(closest(world, Ray{at.start(inwards), inwards}).t, 4, 1e-5);
 }
 
 TEST(SurfaceAt, IsTheClosestPointOfItsPrimitive) {
