@@ -280,7 +280,7 @@ class Planner {
     memory_.group_count = groups_.size();
     memory_.density = density_;
     memory_.diagonal = rounded_up(plan_.all.diagonal());
-    if (memory_.group_count != before.group_count || memory_.density != before.density ||
+    if (!leaves_clusters(before) || memory_.density != before.density ||
         memory_.diagonal != before.diagonal)
       for (PlannedGroup& group : memory_.groups)
         group.grid.reset();
@@ -333,6 +333,14 @@ class Planner {
 
  private:
   static void append(Ids& to, const Ids& ids) { to.insert(to.end(), ids.begin(), ids.end()); }
+
+  /// Whether groups that were whole before would be so with as many groups as now: then none had
+  /// clusters, unless there was no grid left for any.
+  bool leaves_clusters(const PlanMemory& before) const {
+    const std::size_t most = std::max(memory_.group_count, before.group_count);
+    return memory_.group_count == before.group_count ||
+           (before.group_count > 0 && most < static_cast<std::size_t>(kMostGrids));
+  }
 
   /// The extent of a group, which did not change where the plan before has it.
   Extent measure(IdGroup& ids, const PlanMemory& before) {

@@ -1,5 +1,5 @@
 """World: what is asked of triangles and spheres."""
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 
@@ -37,7 +37,8 @@ def _arrays_of(mesh, name):
 class World:
     """Triangles, ready for queries.
 
-    It does not change, but by update(), update_mesh(), add_mesh(), set_visible() and masks.
+    It does not change, but by update(), update_mesh(), update_meshes(), add_mesh(), remove_mesh(),
+    set_visible() and masks.
 
     vertices   (n, 3) numbers. float32 is taken as it is. float64 is rounded to float32 after an
                offset is subtracted: the middle of the bounding box, on a grid of a power of two; 0
@@ -134,7 +135,20 @@ class World:
         meanwhile answer for the vertices before; of two updates at once one is lost. Raises
         TypeError or ValueError, and then nothing has changed.
         """
-        self._core = self._core.mesh_moved(mesh, vertices, threads)
+        self._core = self._core.meshes_moved([(mesh, vertices)], "update_mesh", threads)
+
+    def update_meshes(self, vertices, *, threads=0):
+        """Moves the vertices of some meshes at once, as update_mesh() does of one.
+
+        vertices   a dict from numbers of meshes to their vertices, (n, 3)
+        threads    to build with; 0: one for each processor
+
+        Takes the time of one update. Raises TypeError or ValueError, and then nothing has changed.
+        """
+        if not isinstance(vertices, Mapping):
+            raise TypeError("vertices: expected a dict from numbers of meshes to vertices, found "
+                            f"{shown(vertices)}")
+        self._core = self._core.meshes_moved(list(vertices.items()), "update_meshes", threads)
 
     def add_mesh(self, vertices, faces, *, threads=0):
         """Appends a mesh. The others keep their numbers, ids and mostly their grids.
@@ -151,6 +165,21 @@ class World:
             self._masks = np.concatenate([self._masks, more])
         self._core = core
         return core.meshes() - 1
+
+    def remove_mesh(self, mesh, *, threads=0):
+        """Takes a mesh out, with its faces, vertices and masks.
+
+        mesh      its number
+        threads   to build with; 0: one for each processor
+
+        Numbers of later meshes become less by one, and the ids of their faces by the number of its
+        faces; those before it keep theirs. set_visible() leaves all ids as they are. With masks no
+        query may run meanwhile. Raises TypeError or ValueError, and then nothing has changed.
+        """
+        core, masks = self._core.mesh_removed(mesh, threads), self._masks
+        if masks is not None:
+            masks = masks[self._core.mesh_of(np.arange(len(masks)))[0] != mesh]
+        self._core, self._masks = core, masks
 
     def set_visible(self, mesh, visible, *, threads=0):
         """Leaves a mesh out of all queries, or takes it in again.

@@ -89,11 +89,15 @@ void define_making(Counted<py::module_> module, CoreClass core) {
              const int count = threads_in(threads);
              return Core{built(moved_parts(*self.model, vertices, radii), count)};
            });
-  core.def("mesh_moved",
-           [](const Core& self, py::handle mesh, py::handle vertices, py::handle threads) {
+  core.def("meshes_moved",
+           [](const Core& self, const py::list& moves, const char* method, py::handle threads) {
              const int count = threads_in(threads);
-             return Core{mesh_moved(*self.model, mesh, vertices, count)};
+             return Core{meshes_moved(*self.model, moves, method, count)};
            });
+  core.def("mesh_removed", [](const Core& self, py::handle mesh, py::handle threads) {
+    const int count = threads_in(threads);
+    return Core{mesh_removed(*self.model, mesh, count)};
+  });
   core.def("mesh_shown", [](const Core& self, py::handle mesh, bool visible, py::handle threads) {
     const int count = threads_in(threads);
     return Core{mesh_shown(*self.model, mesh, visible, count)};

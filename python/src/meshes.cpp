@@ -1,6 +1,7 @@
 #include "src/meshes.hpp"
 
 #include <array>
+#include <list>
 #include <string>
 #include <vector>
 
@@ -34,10 +35,8 @@ std::size_t mesh_in(py::handle mesh, const Model& model, const char* method) {
 /// Vertices of one mesh as move_mesh() and add_mesh() take them, among those of a model before.
 class VerticesAmong {
  public:
-  VerticesAmong(const Triples& given, const Model& before) {
-    in_double = before.in_double || given.in_double();
+  VerticesAmong(const Triples& given, const Model& before, bool in_double) {
     if (before.frame.scale != 1) {  // of a file: they count from its frame, which stays
-      in_double = before.in_double;
       in_frame_ = given.in_frame(before.frame);
       array = PointArray(std::span<const Float3>(in_frame_));
       array.name = "vertices";
@@ -51,12 +50,28 @@ class VerticesAmong {
   VerticesAmong(const VerticesAmong&) = delete;
 
   PointArray array;
-  bool in_double;  ///< of the model with them
 
  private:
   std::vector<Float3> in_frame_;
   std::vector<double> doubles_;
 };
+
+/// Whether a model with more vertices has them in double: what is of a file keeps its frame.
+bool becomes_double(const Model& before, const Triples& given) {
+  return before.in_double || (before.frame.scale == 1 && given.in_double());
+}
+
+/// Vertices that may be those of a mesh. Throws ValueError.
+Triples vertices_for(const Model& before, std::size_t mesh, py::handle given) {
+  const MeshRange range = mesh_range(before.scene(), mesh);
+  Triples points = vertices_in(given);
+  if (points.count() != range.vertex_count)
+    wrong_value("vertices",
+                "as many as before, shape (" + std::to_string(range.vertex_count) + ", 3)",
+                text_of(points.full_shape()));
+  parts_of(points, faces_of(before.geometry().triangles, range));  // to refuse what is not finite
+  return points;
+}
 
 }  // namespace
 
@@ -77,19 +92,26 @@ ModelParts joined_parts(py::handle vertices, py::handle faces, py::handle given)
   return parts;
 }
 
-SharedModel mesh_moved(const Model& before, py::handle mesh, py::handle vertices, int threads) {
-  const std::size_t number = mesh_in(mesh, before, "update_mesh");
-  const MeshRange range = mesh_range(before.scene(), number);
-  const Triples points = vertices_in(vertices);
-  if (points.count() != range.vertex_count)
-    wrong_value("vertices",
-                "as many as before, shape (" + std::to_string(range.vertex_count) + ", 3)",
-                text_of(points.full_shape()));
-  parts_of(points, faces_of(before.geometry().triangles, range));  // to refuse what is not finite
-  const VerticesAmong placed(points, before);
-  ModelParts parts{before.scene(), before.frame.scale, placed.in_double};
-  const Object moved = move_mesh(parts.scene, number, placed.array);
-  return built(std::move(parts), threads, &before, {&moved, 1});
+SharedModel meshes_moved(const Model& before,
+                         const py::list& given,
+                         const char* method,
+                         int threads) {
+  std::vector<std::size_t> numbers;
+  std::vector<Triples> vertices;
+  bool in_double = before.in_double;
+  for (const py::handle pair : given) {
+    const auto move = py::reinterpret_borrow<py::tuple>(pair);
+    numbers.push_back(mesh_in(move[0], before, method));
+    vertices.push_back(vertices_for(before, numbers.back(), move[1]));
+    in_double |= becomes_double(before, vertices.back());
+  }
+  std::list<VerticesAmong> placed;
+  std::vector<MeshMove> moves;
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    moves.push_back({numbers[i], placed.emplace_back(vertices[i], before, in_double).array});
+  ModelParts parts{before.scene(), before.frame.scale, in_double};
+  const std::vector<Object> moved = move_meshes(parts.scene, moves);
+  return built(std::move(parts), threads, &before, moved);
 }
 
 SharedModel mesh_shown(const Model& before, py::handle mesh, bool visible, int threads) {
@@ -103,13 +125,21 @@ SharedModel mesh_added(const Model& before, py::handle vertices, py::handle face
     throw py::value_error("add_mesh: expected a World of triangles alone");
   const ModelParts added = mesh_parts(vertices, faces);
   const Triples points = vertices_in(vertices);
-  const VerticesAmong placed(points, before);
+  const bool in_double = becomes_double(before, points);
+  const VerticesAmong placed(points, before, in_double);
   const Triangles& t = added.scene.geometry.triangles;
   std::vector<std::array<std::uint32_t, 3>> corners;
   for (std::size_t i = 0; i < t.size(); ++i)
     corners.push_back({t.a[i], t.b[i], t.c[i]});
-  ModelParts parts{before.scene(), before.frame.scale, placed.in_double};
+  ModelParts parts{before.scene(), before.frame.scale, in_double};
   const Object moved = add_mesh(parts.scene, {placed.array, corners});
+  return built(std::move(parts), threads, &before, {&moved, 1});
+}
+
+SharedModel mesh_removed(const Model& before, py::handle mesh, int threads) {
+  const std::size_t number = mesh_in(mesh, before, "remove_mesh");
+  ModelParts parts{before.scene(), before.frame.scale, before.in_double};
+  const Object moved = remove_mesh(parts.scene, number);
   return built(std::move(parts), threads, &before, {&moved, 1});
 }
 

@@ -294,6 +294,49 @@ class Meshes(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "add_mesh: expected a World of triangles alone"):
             grelha.World.spheres(CUBE, 1).add_mesh(CUBE, CUBE_FACES)
 
+    def test_meshes_moved_at_once(self):
+        for far in (np.zeros(3, np.float32), FAR):
+            meshes = [(v + far, f) for v, f in scene()]
+            world = grelha.World.of(meshes)
+            for i in (4, 1):
+                meshes[i] = meshes[i][0] + np.float32([.5, -.25, 1]), meshes[i][1]
+            world.update_meshes({i: meshes[i][0] for i in (4, np.int64(1))})
+            self.same(world, grelha.World.of(meshes), far)
+            before = world.vertices
+            with self.assertRaisesRegex(ValueError, "vertices: expected as many as before"):
+                world.update_meshes({4: meshes[4][0] + 1, 1: CUBE})
+            with self.assertRaisesRegex(ValueError, "mesh: expected 0 to 4, found 5"):
+                world.update_meshes({4: meshes[4][0] + 1, 5: CUBE})
+            with self.assertRaisesRegex(TypeError, "vertices: expected a dict from numbers"):
+                world.update_meshes([meshes[4][0]])
+            world.update_meshes({})
+            np.testing.assert_array_equal(world.vertices, before)
+        near = grelha.World.of([(CUBE, CUBE_FACES), (CUBE + 4, CUBE_FACES)])
+        moved = {0: CUBE + FAR, 1: CUBE + 4}
+        near.update_meshes(moved)  # one of doubles, one of floats
+        self.same(near, grelha.World.of([(v, CUBE_FACES) for v in moved.values()]))
+        with self.assertRaisesRegex(ValueError, "update_meshes: expected a World of triangles"):
+            grelha.World.spheres(CUBE, 1).update_meshes({0: CUBE})
+
+    def test_removed_meshes(self):
+        for far in (np.zeros(3, np.float32), FAR):
+            meshes = [(v + far, f) for v, f in scene()]
+            world = grelha.World.of(meshes)
+            world.masks = world.mesh_of(np.arange(len(world.faces)))[0] + 1
+            for gone in (1, 3, 0):
+                left = world.masks[world.mesh_of(np.arange(len(world.faces)))[0] != gone]
+                world.remove_mesh(gone)
+                del meshes[gone]
+                self.assertEqual(world.meshes, len(meshes))
+                self.assertEqual(world.masks.tolist(), left.tolist())
+                fresh = grelha.World.of(meshes)
+                fresh.masks = left
+                self.same(world, fresh, far)
+            with self.assertRaisesRegex(ValueError, "mesh: expected 0 to 1, found 2"):
+                world.remove_mesh(2)
+        with self.assertRaisesRegex(ValueError, "remove_mesh: expected a World of triangles"):
+            grelha.World.spheres(CUBE, 1).remove_mesh(0)
+
     def test_copies_and_pickles_stay_meshes(self):
         world = grelha.World.of(scene())
         world.update_mesh(1, BALL * 2)
