@@ -1,6 +1,6 @@
 from os import PathLike
-from typing import (Any, Iterable, Literal, Mapping, NamedTuple, Sequence, SupportsIndex, TypedDict, Union,
-                    overload)
+from typing import (Any, Iterable, Literal, Mapping, NamedTuple, Sequence, SupportsIndex,
+                    TypedDict, Union, overload)
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
