@@ -96,11 +96,11 @@ GRELHA_API const char* grelha_version(void);
 /// text stays until the next call of this thread fails. It is cut after 255 bytes.
 GRELHA_API const char* grelha_last_error(void);
 
-/// Lets further calls of this thread report how far they are, and end early: functions that take
-/// `threads`, and grelha_each_hit(), call `progress`, each some hundred times a second at most,
-/// from one thread at a time, which need not be the caller's. Where it returns 0 they soon return
-/// GRELHA_STOPPED, and a world that they were changing is as it was. `context` is passed on to it.
-/// Null: calls are not reported, as at first.
+/// Lets further calls of this thread report how far they are, and end early. Functions that take
+/// `threads`, and grelha_each_hit(), call `progress` from time to time, from one thread at a time,
+/// which need not be the caller's. Where it returns 0 they soon return GRELHA_STOPPED, and a world
+/// that they were changing is as it was. What the first call of grelha_contains() prepares does not
+/// end early. `context` is passed on. Null: calls are not reported, as at first.
 GRELHA_API void grelha_set_progress(grelha_progress progress, void* context);
 
 /// Makes a world of triangles from a copy of the arrays. Stores it in *world, null after an error.
