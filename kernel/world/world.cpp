@@ -69,6 +69,8 @@ void check(const SceneSpans& scene, const SceneSpans* before, std::span<const Ob
   }
   for (const Object& o : moved)
     check_indices(scene, o.first_triangle, o.triangle_count);
+  const std::size_t old = std::min(before->geometry.triangles.size(), g.triangles.size());
+  check_indices(scene, old, g.triangles.size() - old);
 }
 
 using SharedIds = std::shared_ptr<const std::vector<std::uint32_t>>;

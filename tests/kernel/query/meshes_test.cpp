@@ -403,6 +403,30 @@ TEST(Meshes, StayWhereABuildIsStopped) {
   }
 }
 
+/// The others are not looked at again.
+TEST(Meshes, ThatMoveAreCheckedWithWhatIsNew) {
+  const OffsetScene scene = joined(row_of_balls(3));
+  const World world(scene, {});
+  const Object last = scene.geometry.objects[3];
+  const auto refuses = [&](const Scene& after, const Object& moved) {
+    EXPECT_THROW(World(after, {}, world, {&moved, 1}), std::invalid_argument);
+  };
+  Scene bad = scene;
+  bad.geometry.triangles.b[last.first_triangle] = 1u << 20;
+  refuses(bad, last);
+  Scene more = scene;
+  for (std::vector<std::uint32_t>* const corner :
+       {&more.geometry.triangles.a, &more.geometry.triangles.b, &more.geometry.triangles.c})
+    corner->push_back(1u << 20);
+  refuses(more, last);
+  Scene less = scene;
+  less.geometry.triangles.x.resize(9);
+  less.geometry.triangles.y.resize(9);
+  less.geometry.triangles.z.resize(9);
+  refuses(less, {});
+  refuses(scene, {last.first_triangle, 1u << 20});
+}
+
 /// Where one of two goes, the offset is that of a new World.
 TEST(Meshes, InDoubleThatAreRemovedLeaveTheOffsetOfTheRest) {
   const std::vector<std::array<std::uint32_t, 3>> faces = {{0, 1, 2}, {0, 2, 3}};

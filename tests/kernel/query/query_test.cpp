@@ -213,6 +213,12 @@ TEST(Query, SurfacesAreWhatTheCallerBuilt) {
   EXPECT_GT(ball.start({0, 1, 1}).z, 2.f);
   EXPECT_LT(ball.start({0, 1, -1}).z, 2.f);
   EXPECT_EQ(triangle.normal, (Float3{0, 0, 1}));
+  const SurfacePoint same = surface_at(world, 1, .25, .5);
+  EXPECT_EQ(same.point, triangle.point);
+  EXPECT_EQ(same.shading, triangle.shading);
+  EXPECT_THROW(surface_at(world, 1, .75, .5), std::invalid_argument);
+  EXPECT_THROW(surface_at(world, 0, 0, 0), std::invalid_argument) << "a sphere";
+  EXPECT_THROW(surface_at(world, 2, 0, 0), std::invalid_argument);
   // a product, a sum, a root, a quotient: four roundings of .6
   EXPECT_NEAR(triangle.shading.x, .6, 4 * oracle::kEps);
   EXPECT_NEAR(triangle.shading.z, .8, 4 * oracle::kEps);
