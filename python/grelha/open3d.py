@@ -123,7 +123,7 @@ class RaycastingScene:
         ray = np.repeat(np.arange(len(offsets) - 1), np.diff(offsets))
         rows = rays.reshape(-1, 6).astype(np.float64)
         corners = self._corners[face]
-        points = points_along(rows[ray, :3], rows[ray, 3:], t.astype(np.float64), corners)
+        points = points_along(rows[ray, :3], rows[ray, 3:], t, corners)
         described = self._described(face)
         return _answers({"ray_splits": offsets.astype(np.uint32),
                          "ray_ids": ray.astype(np.uint32),

@@ -1,14 +1,20 @@
 """What trimesh's tests of rays ask, in own words, of grelha.trimesh; and meshes that change."""
 import collections
+import copy
 import dataclasses
 import pickle
+import sys
+import time
 import unittest
-from types import SimpleNamespace
+import warnings
+from types import ModuleType, SimpleNamespace
+from unittest import mock
 
 import numpy as np
 
-from grelha.trimesh import RayMeshIntersector
-from meshes import CUBE, CUBE_FACES, ball
+import grelha.trimesh
+from grelha.trimesh import ProximityQuery, RayMeshIntersector
+from meshes import CUBE, CUBE_FACES, ball, distance_to_triangles
 
 BOX = CUBE.astype(np.float64) - 0.5  # around the origin
 
@@ -215,6 +221,203 @@ class Changes(unittest.TestCase):
         ray = RayMeshIntersector(mesh_of(np.zeros((0, 3)), np.zeros((0, 3), int)))
         self.assertEqual(ray.intersects_first(*self.LINE).tolist(), [-1])
         self.assertEqual(ray.intersects_location(*self.LINE)[0].shape, (0, 3))
+
+
+class Tracked(np.ndarray):
+    """As trimesh.caching.TrackedArray: a hash that is kept until the array is written to."""
+
+    hashed = 0  # how often
+
+    def __array_finalize__(self, base):
+        self.kept = None
+        if isinstance(base, Tracked):
+            base.kept = None
+
+    @property
+    def mutable(self):
+        return self.flags["WRITEABLE"]
+
+    def __setitem__(self, *given):
+        self.kept = None
+        super().__setitem__(*given)
+
+    def __imul__(self, other):
+        self.kept = None
+        return super().__imul__(other)
+
+    def __hash__(self):
+        if self.kept is None:
+            Tracked.hashed += 1
+            self.kept = hash(self.tobytes())
+        return self.kept
+
+
+class Trimesh:
+    """As trimesh.Trimesh: its ray is made before a primitive has vertices, and by copies."""
+
+    def __init__(self, vertices=None, faces=None):
+        self.data = {}
+        if vertices is not None:
+            self.vertices, self.faces = vertices, faces
+        modules = sys.modules
+        self.ray = modules["trimesh.ray.ray_triangle"].RayMeshIntersector(self)
+        self.nearest = modules["trimesh.proximity"].ProximityQuery(self)
+
+    @property
+    def vertices(self):
+        return self.data.get("vertices", np.empty((0, 3)))
+
+    @vertices.setter
+    def vertices(self, values):
+        self.data["vertices"] = np.array(values, np.float64).view(Tracked)
+
+    @property
+    def faces(self):
+        return self.data.get("faces", np.empty((0, 3)))
+
+    @faces.setter
+    def faces(self, values):
+        self.data["faces"] = np.array(values, np.int64).view(Tracked)
+
+    def copy(self):
+        copied = Trimesh()
+        copied.data = copy.deepcopy(self.data)
+        return copied
+
+
+class Box(Trimesh):
+    """As trimesh.primitives.Box."""
+
+    def __init__(self, extents):
+        super().__init__()
+        self.extents = extents
+
+    @property
+    def vertices(self):
+        return BOX * self.extents
+
+    @property
+    def faces(self):
+        return CUBE_FACES
+
+
+class Theirs:
+    def __init__(self, mesh):
+        self.mesh = mesh
+
+
+class Installed(unittest.TestCase):
+    """install() in a stand-in for trimesh."""
+
+    LINE = np.array([[0.1, 0.2, -9]]), np.array([[0, 0, 1.0]])
+
+    def setUp(self):
+        names = "trimesh", "trimesh.ray", "trimesh.ray.ray_triangle", "trimesh.proximity"
+        modules = {name: ModuleType(name) for name in names}
+        modules["trimesh.ray.ray_triangle"].RayMeshIntersector = Theirs
+        for name in ("ProximityQuery", "closest_point", "signed_distance"):
+            setattr(modules["trimesh.proximity"], name, Theirs)
+        patch = mock.patch.dict(sys.modules, modules)
+        patch.start()
+        self.addCleanup(patch.stop)
+        self.addCleanup(grelha.trimesh.uninstall)
+        grelha.trimesh.install()
+
+    def test_meshes_copies_and_primitives(self):
+        for mesh in (Trimesh(BOX, CUBE_FACES), Trimesh(BOX, CUBE_FACES).copy(), Box([1, 1, 1])):
+            self.assertIsInstance(mesh.ray, RayMeshIntersector)
+            self.assertEqual(mesh.ray.intersects_location(*self.LINE)[0][:, 2].tolist(),
+                             [-0.5, 0.5])
+            self.assertEqual(mesh.nearest.signed_distance([[0, 0, 0.25]]).tolist(), [0.25])
+        self.assertEqual(Trimesh().ray.intersects_first(*self.LINE).tolist(), [-1])
+
+    def test_options_by_place_are_those_of_ray_triangle(self):
+        tri, ray, where = Trimesh(BOX, CUBE_FACES).ray.intersects_id(*self.LINE, True, False)
+        self.assertEqual((len(tri), len(ray), where.tolist()), (1, 1, [[0.1, 0.2, -0.5]]))
+
+    def test_taken_out_again(self):
+        grelha.trimesh.install()
+        grelha.trimesh.uninstall()
+        mesh = Trimesh(BOX, CUBE_FACES)
+        self.assertEqual({type(mesh.ray), type(mesh.nearest)}, {Theirs})
+        self.assertIs(sys.modules["trimesh.proximity"].closest_point, Theirs)
+        grelha.trimesh.uninstall()
+
+    def test_written_to(self):
+        mesh = Trimesh(BOX, CUBE_FACES)
+        self.assertEqual(mesh.ray.intersects_location(*self.LINE)[0][0, 2], -0.5)
+        mesh.vertices *= 2
+        self.assertEqual(mesh.ray.intersects_location(*self.LINE)[0][0, 2], -1)
+        mesh.vertices[:, 2] = BOX[:, 2] * 8
+        hash(mesh.vertices)  # by someone else: clean, and yet another
+        self.assertEqual(mesh.ray.intersects_location(*self.LINE)[0][0, 2], -4)
+        mesh.faces[:] = 0
+        self.assertEqual(mesh.ray.intersects_first(*self.LINE).tolist(), [-1])
+        mesh.data = Trimesh(BOX * 6, CUBE_FACES).data
+        self.assertEqual(mesh.nearest.vertex([[9, 9, 9]])[1].tolist(), [7])
+        self.assertEqual(mesh.nearest.on_surface([[0, 0, 9]])[1].tolist(), [6])
+
+    def test_one_ray_costs_no_look_at_the_mesh(self):
+        vertices, faces = ball(133)
+        mesh = Trimesh(vertices, faces)
+        mesh.ray.intersects_any(*self.LINE)
+        before = Tracked.hashed
+        for ask in (mesh.ray.intersects_any, mesh.ray.intersects_first,
+                    mesh.ray.intersects_location):
+            start = time.process_time()
+            with mock.patch.object(grelha.trimesh, "_same", side_effect=AssertionError):
+                for _ in range(2000):
+                    ask(*self.LINE)
+            spent = (time.process_time() - start) / 2000 * 1e6
+            print(f"{ask.__name__}: {spent:.1f} us a ray, {len(faces)} faces")
+        self.assertEqual(Tracked.hashed, before)
+
+    def test_module_functions(self):
+        mesh = Trimesh(BOX, CUBE_FACES)
+        points = [[0, 0, 2.0], [0.1, 0, 0.2]]
+        places = sys.modules["trimesh.proximity"]
+        np.testing.assert_allclose(places.closest_point(mesh, points)[0],
+                                   [[0, 0, 0.5], [0.1, 0, 0.5]])
+        np.testing.assert_allclose(places.signed_distance(mesh, points), [-1.5, 0.3])
+
+
+class Nearest(unittest.TestCase):
+    def test_of_points_everywhere(self):
+        vertices, faces = ball(9)
+        far = np.array([4e5, -1e5, 3e5]) + 0.3
+        points = np.random.default_rng(1).uniform(-1.5, 1.5, (500, 3))
+        for offset in (0, far):
+            mesh = mesh_of(vertices + offset, faces)
+            query = ProximityQuery(mesh)
+            distance, where = distance_to_triangles(mesh.vertices, faces, points + offset)
+            found = query.on_surface(points + offset)
+            self.assertEqual([a.dtype.str for a in found], ["<f8", "<f8", "<i8"])
+            np.testing.assert_allclose(found[1], distance, atol=1e-9 if np.all(offset == 0) else 1e-7)
+            np.testing.assert_allclose(found[0], where, atol=1e-7)
+            inside = np.linalg.norm(points, axis=1) < 1 - 0.05
+            signed = query.signed_distance(points + offset)
+            self.assertTrue((signed[inside] > 0).all())
+            np.testing.assert_array_equal(np.abs(signed), found[1])
+            to_vertices = np.linalg.norm((points + offset)[:, None] - mesh.vertices, axis=-1)
+            nearest, index = query.vertex(points + offset)
+            np.testing.assert_array_equal(index, to_vertices.argmin(1))
+            np.testing.assert_allclose(nearest, to_vertices.min(1), rtol=1e-12)
+
+    def test_signs_on_the_surface(self):
+        query = ProximityQuery(mesh_of(BOX, CUBE_FACES))
+        self.assertEqual(np.signbit(query.signed_distance(BOX)).tolist(), [False] * 8)
+
+    def test_nothing_and_nowhere(self):
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            query = ProximityQuery(mesh_of(np.zeros((0, 3)), np.zeros((0, 3), int)))
+            closest, distance, face = query.on_surface([[1, 2, 3]])
+            self.assertEqual((distance.tolist(), face.tolist()), ([np.inf], [-1]))
+            self.assertEqual(query.vertex([[1, 2, 3]])[1].tolist(), [-1])
+            query = ProximityQuery(mesh_of(BOX, CUBE_FACES))
+            closest, distance, face = query.on_surface([[np.nan, 0, 0], [0, 0, 1]])
+            self.assertEqual((face[0], distance[1]), (-1, 0.5))
+            self.assertTrue(np.isnan(closest[0]).all() and not distance[0] < 1e9)
 
 
 if __name__ == "__main__":

@@ -57,7 +57,7 @@ class Types(unittest.TestCase):
         for module, stub in STUBS.items():
             stated = {(owner, function.name) for owner, function in functions(stub)}
             for name, thing in vars(importlib.import_module(module)).items():
-                if inspect.isclass(thing) and thing.__module__ == module:
+                if name[0] != "_" and inspect.isclass(thing) and thing.__module__ == module:
                     for member, value in vars(thing).items():
                         if inspect.isfunction(value) and not member.startswith("_"):
                             self.assertIn((name, member), stated, module)
