@@ -2,11 +2,14 @@
 
     from grelha.open3d import RaycastingScene
 
-Arguments may be arrays, lists, or tensors with .numpy(). Answers are numpy arrays that are read
-like tensors too: they and their elements have .numpy(), .cpu(), .isfinite() and so on. Rays and
-points may be float64. Answers do not depend on the number of threads. Inside and outside are
-exact: `nsamples` is read and not needed.
+Arguments may be arrays, lists, or tensors with .numpy(). Answers to Open3D's tensors are such
+tensors. Others are numpy arrays that are read like tensors too: they and their elements have
+.numpy(), .cpu(), .isfinite() and so on. Rays and points may be float64. Answers do not depend on
+the number of threads. Inside and outside are exact: `nsamples` is read and not needed. A ray that
+starts on a triangle, or runs in its plane, does not hit it.
 """
+import sys
+
 import numpy as np
 
 from ._answers import answer
@@ -42,8 +45,18 @@ def _mesh_arrays(mesh):
                         f"found {type(mesh).__name__}") from None
 
 
-def _answers(arrays):
-    return {name: answer(array) for name, array in arrays.items()}
+def _maker(kind):
+    """What makes answers from arrays: tensors where kind is Open3D's type of them."""
+    return getattr(kind, "from_numpy", answer)
+
+
+def _answers(arrays, given):
+    make = _maker(type(given))
+    return {name: make(np.ascontiguousarray(array)) for name, array in arrays.items()}
+
+
+def _answer(array, given):
+    return _answers({"it": array}, given)["it"]
 
 
 class RaycastingScene:
@@ -87,18 +100,18 @@ class RaycastingScene:
         uint32, INVALID_ID without one; primitive_uvs (..., 2) and primitive_normals (..., 3)
         float32, 0 without one.
         """
-        rays = _with_two_axes(rays, "rays", 6)
+        array = _with_two_axes(rays, "rays", 6)
         world = self._commit()
-        hits = world.closest(rays[..., :3], rays[..., 3:], threads=nthreads)
+        hits = world.closest(array[..., :3], array[..., 3:], threads=nthreads)
         return _answers({"t_hit": hits.t,
                          "primitive_uvs": np.stack([hits.u, hits.v], axis=-1),
-                         **self._described(hits.face)})
+                         **self._described(hits.face)}, rays)
 
     def test_occlusions(self, rays, tnear=0.0, tfar=np.inf, nthreads=0):
         """True for each ray (..., 6) that hits anything between tnear and tfar: bool (...)."""
-        rays = _with_two_axes(rays, "rays", 6)
-        return answer(self._commit().occluded(rays[..., :3], rays[..., 3:], tnear, tfar,
-                                              threads=nthreads))
+        array = _with_two_axes(rays, "rays", 6)
+        return _answer(self._commit().occluded(array[..., :3], array[..., 3:], tnear, tfar,
+                                               threads=nthreads), rays)
 
     def count_intersections(self, rays, nthreads=0):
         """How often each ray (..., 6) passes through the surfaces: int32 (...).
@@ -106,9 +119,9 @@ class RaycastingScene:
         Odd from inside a closed mesh and even from outside, also where the ray meets an edge or a
         vertex. A ray that touches one there counts 0 or 2.
         """
-        rays = _with_two_axes(rays, "rays", 6)
-        counts = self._commit().count_crossings(rays[..., :3], rays[..., 3:], threads=nthreads)
-        return answer(counts.astype(np.int32))
+        array = _with_two_axes(rays, "rays", 6)
+        counts = self._commit().count_crossings(array[..., :3], array[..., 3:], threads=nthreads)
+        return _answer(counts.astype(np.int32), rays)
 
     def list_intersections(self, rays, nthreads=0):
         """Where each ray (..., 6) passes through the surfaces; see count_intersections().
@@ -117,11 +130,11 @@ class RaycastingScene:
         geometry_ids and primitive_ids uint32, t_hit float32, all (passages,); primitive_uvs
         (passages, 2) float32. They are in the order of the ray.
         """
-        rays = _with_two_axes(rays, "rays", 6)
-        offsets, t, face, _ = self._commit().crossings(rays[..., :3], rays[..., 3:],
+        array = _with_two_axes(rays, "rays", 6)
+        offsets, t, face, _ = self._commit().crossings(array[..., :3], array[..., 3:],
                                                        threads=nthreads)
         ray = np.repeat(np.arange(len(offsets) - 1), np.diff(offsets))
-        rows = rays.reshape(-1, 6).astype(np.float64)
+        rows = array.reshape(-1, 6).astype(np.float64)
         corners = self._corners[face]
         points = points_along(rows[ray, :3], rows[ray, 3:], t, corners)
         described = self._described(face)
@@ -130,7 +143,7 @@ class RaycastingScene:
                          "t_hit": t,
                          "geometry_ids": described["geometry_ids"],
                          "primitive_ids": described["primitive_ids"],
-                         "primitive_uvs": barycentric(points, corners).astype(np.float32)})
+                         "primitive_uvs": barycentric(points, corners).astype(np.float32)}, rays)
 
     def compute_closest_points(self, query_points, nthreads=0):
         """The closest point of the surfaces to each point (..., 3).
@@ -146,25 +159,27 @@ class RaycastingScene:
         uvs[hit] = barycentric(found.points.reshape(-1, 3)[hit], self._corners[face[hit]])
         return _answers({"points": found.points.astype(np.float32),
                          "primitive_uvs": uvs.astype(np.float32).reshape(*points.shape[:-1], 2),
-                         **self._described(found.id)})
+                         **self._described(found.id)}, query_points)
 
     def compute_distance(self, query_points, nthreads=0):
         """The distance of each point (..., 3) to the surfaces: float32 (...)."""
         points = _with_two_axes(query_points, "query_points", 3)
-        return answer(self._commit().closest_points(points, threads=nthreads).distance)
+        found = self._commit().closest_points(points, threads=nthreads)
+        return _answer(found.distance, query_points)
 
     def compute_signed_distance(self, query_points, nthreads=0, nsamples=1):
         """The same, negative inside closed meshes; of open ones by the crossings of one ray."""
         _check_samples(nsamples)
         points = _with_two_axes(query_points, "query_points", 3)
-        return answer(self._commit().signed_distance(points, inside="odd", threads=nthreads))
+        found = self._commit().signed_distance(points, inside="odd", threads=nthreads)
+        return _answer(found, query_points)
 
     def compute_occupancy(self, query_points, nthreads=0, nsamples=1):
         """1 for each point (..., 3) that has a negative distance, else 0: float32 (...)."""
         _check_samples(nsamples)
         points = _with_two_axes(query_points, "query_points", 3)
         inside = self._commit().contains(points, inside="odd", threads=nthreads)
-        return answer(inside.astype(np.float32))
+        return _answer(inside.astype(np.float32), query_points)
 
     @staticmethod
     def create_rays_pinhole(*args, **kwargs):
@@ -173,14 +188,16 @@ class RaycastingScene:
         create_rays_pinhole(intrinsic_matrix, extrinsic_matrix, width_px, height_px): (3, 3) and,
         from the world to the camera, (4, 4).
         create_rays_pinhole(fov_deg, center, eye, up, width_px, height_px): fov_deg is horizontal.
-        As in Open3D, rows run along `up`: the first row is the lowest.
+        As in Open3D, rows run along `up`: the first row is the lowest. A tensor where the program
+        has imported open3d.
         """
         by_matrix = ("intrinsic_matrix", "extrinsic_matrix", "width_px", "height_px")
         by_view = ("fov_deg", "center", "eye", "up", "width_px", "height_px")
         for names, make in ((by_matrix, _rays_by_matrix), (by_view, _rays_by_view)):
             given = {**dict(zip(names, args)), **kwargs}
             if len(args) + len(kwargs) == len(names) and set(given) == set(names):
-                return answer(make(**given))
+                core = getattr(sys.modules.get("open3d"), "core", None)
+                return _maker(getattr(core, "Tensor", None))(make(**given))
         raise TypeError(f"create_rays_pinhole: expected {', '.join(by_matrix)} or "
                         f"{', '.join(by_view)}, found {len(args)} arguments and "
                         f"{', '.join(kwargs) or 'no'} names")

@@ -1,6 +1,11 @@
 """What Open3D's tests of RaycastingScene and its tutorials ask, in own words, of grelha.open3d."""
+import importlib
+import importlib.util
 import pickle
+import sys
 import unittest
+from types import SimpleNamespace
+from unittest import mock
 
 import numpy as np
 
@@ -41,6 +46,15 @@ class FarTensor(Tensor):
         if not (self.is_near and self.is_free):
             raise TypeError("can't convert")
         return self.numbers
+
+
+class OwnTensor(Tensor):
+    """As Open3D's own, which are made from arrays and refuse to mix with them."""
+
+    @staticmethod
+    def from_numpy(array):
+        assert type(array) is np.ndarray and array.flags.c_contiguous
+        return OwnTensor(array)
 
 
 def scene_of(*meshes):
@@ -138,7 +152,12 @@ class Tests(unittest.TestCase):
 
 
 class Tutorials(unittest.TestCase):
-    """What programs do with the answers."""
+    """What programs do with the answers; they have not imported open3d."""
+
+    def setUp(self):
+        patch = mock.patch.dict(sys.modules, open3d=None)
+        patch.start()
+        self.addCleanup(patch.stop)
 
     def test_picture(self):
         scene = scene_of((CUBE, CUBE_FACES), (CUBE + 2, CUBE_FACES))
@@ -205,6 +224,54 @@ class Tutorials(unittest.TestCase):
         vertices += 5
         faces[:] = 0
         self.assertEqual(scene.cast_rays(THROUGH_CUBE)["t_hit"][0], 1)
+
+
+class Tensors(unittest.TestCase):
+    """Answers to tensors of Open3D are such tensors, of the same numbers."""
+
+    def test_every_answer(self):
+        scene = scene_of((CUBE, CUBE_FACES))
+        points = np.float32([[0.5, 0.5, 0.25], [9, 9, 9]])
+        for method, given in (("cast_rays", THROUGH_CUBE), ("test_occlusions", THROUGH_CUBE),
+                              ("count_intersections", THROUGH_CUBE),
+                              ("list_intersections", THROUGH_CUBE),
+                              ("compute_closest_points", points), ("compute_distance", points),
+                              ("compute_signed_distance", points), ("compute_occupancy", points)):
+            found, plain = (getattr(scene, method)(a) for a in (OwnTensor(given), given))
+            if not isinstance(found, dict):
+                found, plain = {method: found}, {method: plain}
+            self.assertEqual(set(found), set(plain))
+            for name, part in found.items():
+                self.assertIs(type(part), OwnTensor, name)
+                self.assertEqual(part.numpy().dtype, plain[name].dtype)
+                np.testing.assert_array_equal(part.numpy(), plain[name])
+
+    def test_rays_where_open3d_is_imported(self):
+        view = 60, [0, 0, 0], [0, 0, -3], [0, 1, 0], 4, 3
+        open3d = SimpleNamespace(core=SimpleNamespace(Tensor=OwnTensor))
+        for module, kind in ((open3d, OwnTensor), (SimpleNamespace(), np.ndarray)):
+            with mock.patch.dict(sys.modules, open3d=module):
+                rays = RaycastingScene.create_rays_pinhole(*view)
+            self.assertIsInstance(rays, kind)
+            self.assertEqual(rays.numpy().shape, (3, 4, 6))
+
+    @unittest.skipUnless(importlib.util.find_spec("open3d"), "open3d is not installed")
+    def test_the_tutorial(self):
+        open3d = importlib.import_module("open3d")
+        scene = RaycastingScene()
+        scene.add_triangles(open3d.t.geometry.TriangleMesh.from_legacy(
+            open3d.geometry.TriangleMesh.create_box()))
+        rays = scene.create_rays_pinhole(fov_deg=60, center=[0.5, 0.5, 0.5], eye=[-1, -1, -1],
+                                         up=[0, 0, 1], width_px=32, height_px=24)
+        ans = scene.cast_rays(rays)
+        hit = ans["t_hit"].isfinite()
+        points = rays[hit][:, :3] + rays[hit][:, 3:] * ans["t_hit"][hit].reshape((-1, 1))
+        cloud = open3d.t.geometry.PointCloud(points)
+        found = cloud.to_legacy().points
+        self.assertGreater(len(found), 100)
+        self.assertLess(np.abs(np.clip(found, 0, 1) - found).max(), 1e-6)
+        nothing = scene.list_intersections(rays.reshape((-1, 6))[:0])
+        self.assertEqual(list(nothing["t_hit"].shape), [0])
 
 
 class Crossings(unittest.TestCase):
