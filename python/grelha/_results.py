@@ -3,6 +3,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ._geometry import numbers
+
 
 def _part(self, index):
     """A member by its number, as of any tuple, or by an array the answers of these rays."""
@@ -23,6 +25,26 @@ class Hits(NamedTuple):
     face: Any  # int64; -1 without a triangle
 
     __getitem__ = _part
+
+    def points(self, origins, directions):
+        """Where these hits are: origins + t directions, computed in double, NaN without a hit.
+
+        origins, directions   as closest() was given them, (..., 3); of hits[mask] those of the mask
+
+        Returns (..., 3), float64 if one of them is, else float32.
+        """
+        t = np.asarray(self.t)
+        ray = [numbers(given, name, 3) for given, name in ((origins, "origins"),
+                                                           (directions, "directions"))]
+        shape = (*t.shape, 3)
+        for array, name in zip(ray, ("origins", "directions")):
+            try:
+                np.broadcast_to(array, shape)
+            except ValueError:
+                raise ValueError(f"{name}: expected shape {shape} as of the hits, "
+                                 f"found {array.shape}") from None
+        t = np.where(np.isfinite(t), t, np.nan)[..., None].astype(np.float64)
+        return (ray[0] + t * ray[1]).astype(np.result_type(*ray))
 
 
 class HitLists(NamedTuple):

@@ -1,7 +1,8 @@
 """Scene: what is rendered, and the functions that read and write files."""
+import math
+
 from . import _grelha
 from ._geometry import flag
-from ._results import Surfaces
 from ._world import World, _expect_unmade
 
 
@@ -153,7 +154,8 @@ class Scene:
                   times the mixed colours of vertices; NaN without a hit
         id        int64 (...), as of World.closest
         """
-        return Surfaces(*self._core.surfaces(origins, directions, threads))
+        return self._core.core().surfaces(origins, directions, 0.0, math.inf, None, None, None,
+                                          threads)
 
 
 def read(path, *, colors=True, points=None, smooth=None, material=None, threads=0):

@@ -337,6 +337,22 @@ class World:
         return self._core.count_crossings(origins, directions, t_min, t_max, skip, mask,
                                           self._masks, threads)
 
+    def surfaces(self, origins, directions, t_min=0.0, t_max=np.inf, skip=None, *, mask=None,
+                 threads=0):
+        """What each ray hits first: Surfaces(points, normals, colors, id).
+
+        closest() describes the arguments, and t, u and v.
+
+        points    (..., 3), float64 if the vertices were, else float32; NaN without a hit
+        normals   float32 (..., 3), unit: of spheres outwards, of faces on the side from which their
+                  corners run counter-clockwise, those of vertices mixed where the World of a Scene
+                  has them; NaN without a hit
+        colors    float32 (..., 3): of a Scene's materials, light grey without; NaN without a hit
+        id        int64 (...), as of closest()
+        """
+        return self._core.surfaces(origins, directions, t_min, t_max, skip, mask, self._masks,
+                                   threads)
+
     def start(self, face, u, v, directions):
         """Where rays start that leave points of faces, so that they do not hit them again.
 

@@ -144,6 +144,7 @@ void define_core(py::module_& module) {
   core.def("count_hits", of_rays(hit_counts));
   core.def("crossings", of_rays(ray_crossings));
   core.def("count_crossings", of_rays(crossing_counts));
+  core.def("surfaces", of_rays(ray_surfaces));
   core.def("check", [](const Core& self) { return checked_mesh(SharedModel(self.model)); });
   core.def("contains", of_points(inside_points));
   core.def("signed_distance", of_points(signed_distances_of));

@@ -52,8 +52,6 @@ class FileScene {
   py::array_t<float> render(const RenderArguments& given) const;
   /// Origins and directions of the rays through the centres of pixels (h, w, 3).
   py::tuple camera_rays(const ViewArguments& given) const;
-  /// Points, normals, colours and ids of what rays hit first.
-  py::tuple surfaces(py::handle origins, py::handle directions, int threads) const;
 
  private:
   static FileScene of(SceneFile file, bool in_double, int threads);

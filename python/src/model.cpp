@@ -1,5 +1,7 @@
 #include "src/model.hpp"
 
+#include <algorithm>
+
 #include "src/hear.hpp"
 
 namespace grelha::python {
@@ -133,6 +135,14 @@ py::object outside_points(const Model& model, const std::vector<Float3>& points,
     return array;
   };
   return model.in_double ? fill(py::array_t<double>(shape)) : fill(py::array_t<float>(shape));
+}
+
+py::array_t<float> floats_of(const std::vector<Float3>& all, Shape shape) {
+  shape.push_back(3);
+  py::array_t<float> array(shape);
+  static_assert(sizeof(Float3) == 3 * sizeof(float));
+  std::copy_n(reinterpret_cast<const float*>(all.data()), 3 * all.size(), array.mutable_data());
+  return array;
 }
 
 py::array_t<std::uint8_t> masks_in(py::handle given, const Model& model) {

@@ -67,6 +67,8 @@ ModelParts sphere_parts(py::handle centers, py::handle radii);
 
 /// Points of the model's frame in the caller's units: (..., 3), float64 if the vertices were.
 py::object outside_points(const Model& model, const std::vector<Float3>& points, Shape shape);
+/// Triples as they are: (..., 3) float32.
+py::array_t<float> floats_of(const std::vector<Float3>& all, Shape shape);
 /// Masks of the primitives as uint8 (primitives,). Throws TypeError and ValueError.
 py::array_t<std::uint8_t> masks_in(py::handle given, const Model& model);
 

@@ -12,6 +12,8 @@ py::object all_ray_hits(const Model& model, const RayArguments& rays, py::handle
 py::object ray_crossings(const Model& model, const RayArguments& rays, py::handle threads);
 py::object crossing_counts(const Model& model, const RayArguments& rays, py::handle threads);
 py::object hit_counts(const Model& model, const RayArguments& rays, py::handle threads);
+/// Points, normals, colours and ids of what rays hit first.
+py::object ray_surfaces(const Model& model, const RayArguments& rays, py::handle threads);
 
 /// Where rays start on faces.
 struct StartArguments {

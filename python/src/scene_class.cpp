@@ -66,11 +66,6 @@ void define_scene(py::module_& into) {
     return self.camera_rays(view_in(view));
   });
   scene.def(
-      "surfaces",
-      [](const FileScene& self, py::handle origins, py::handle directions, py::handle wanted) {
-        return self.surfaces(origins, directions, threads_in(wanted));
-      });
-  scene.def(
       "render",
       [](const FileScene& self,
          const py::tuple& view,

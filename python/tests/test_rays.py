@@ -1,5 +1,6 @@
 """Closest hits, occlusion and all hits, against every triangle in float64."""
 import unittest
+import warnings
 
 import numpy as np
 
@@ -83,6 +84,62 @@ class Closest(unittest.TestCase):
         self.assertIs(hits[1], hits.id)
         self.assertEqual(len(hits[:2]), 2)
         self.assertEqual(len(world.closest_points(CUBE)[np.arange(3)].points), 3)
+
+    def test_points_of_hits(self):
+        world = grelha.World(CUBE, CUBE_FACES)
+        origins, directions = rays(300, 3)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            hits = world.closest(origins, directions)
+            points = hits.points(origins, directions)
+            met = hits.id >= 0
+            self.assertEqual((points.dtype, points.shape), (np.float32, (300, 3)))
+            np.testing.assert_array_equal(np.isnan(points).any(1), ~met)
+            a, b, c = (CUBE[CUBE_FACES[hits.id[met], k]] for k in range(3))
+            u, v = hits.u[met, None], hits.v[met, None]
+            np.testing.assert_allclose(points[met], (1 - u - v) * a + u * b + v * c, atol=1e-6)
+            some = hits[met].points(origins[met], directions[met])
+            np.testing.assert_array_equal(some, points[met])
+            one = world.closest((0.5, 0.25, 9), (0, 0, -1))
+            self.assertEqual(one.points((0.5, 0.25, 9), (0, 0, -1)).tolist(), [0.5, 0.25, 1])
+            away = world.closest((0.5, 0.25, 9), (0, 0, 1))
+            self.assertTrue(np.isnan(away.points((0.5, 0.25, 9), (0, 0, 1))).all())
+            grid = world.closest(origins.reshape(30, 10, 3), directions[0])
+            self.assertEqual(grid.points(origins.reshape(30, 10, 3), directions[0]).shape,
+                             (30, 10, 3))
+        with self.assertRaisesRegex(ValueError, "origins: expected shape"):
+            hits[met].points(origins, directions[met])
+
+    def test_surfaces(self):
+        vertices, faces = ball(10)
+        vertices, origins, directions = map(np.float64, (vertices, *rays(500, 4)))
+        for offset in (0, 4e6):
+            world = grelha.World(vertices + offset, faces)
+            hits = world.closest(origins + offset, directions)
+            seen = world.surfaces(origins + offset, directions)
+            self.assertIsInstance(seen, grelha.Surfaces)
+            np.testing.assert_array_equal(seen.id, hits.id)
+            met = hits.id >= 0
+            self.assertTrue(0 < met.sum() < 500)
+            a, b, c = (vertices[faces[hits.id[met], k]].astype(float) for k in range(3))
+            normal = np.cross(b - a, c - a)
+            normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+            np.testing.assert_allclose(seen.normals[met], normal, atol=1e-5)
+            points = hits.points(origins + offset, directions)
+            np.testing.assert_allclose(seen.points[met], points[met], atol=2e-5)
+            self.assertTrue(np.isnan(seen.normals[~met]).all())
+        late = world.surfaces(origins + offset, directions, t_min=hits.t)
+        np.testing.assert_array_equal(
+            late.id, world.closest(origins + offset, directions, t_min=hits.t).id)
+        world.masks = np.where(np.arange(len(faces)) % 2, 1, 2)
+        odd = world.surfaces(origins + offset, directions, mask=1).id
+        self.assertTrue(((odd % 2 == 1) | (odd == -1)).all())
+
+    def test_surfaces_of_a_ball(self):
+        world = grelha.World.spheres([[1, 2, 3]], 2)
+        one = world.surfaces((1, 2, 9), (0, 0, -1))
+        self.assertEqual((one.points.tolist(), one.normals.tolist(), one.id.tolist()),
+                         ([1, 2, 5], [0, 0, 1], 0))
 
     def test_closed_mesh_loses_no_ray(self):
         vertices, faces = ball(20)
