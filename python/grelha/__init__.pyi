@@ -205,6 +205,9 @@ class Scene:
     def __init__(self, vertices: ArrayLike, faces: ArrayLike, *, colors: ArrayLike | None = ...,
                  smooth: float | None = ..., material: dict[str, Any] | None = ...,
                  threads: int = ...) -> None: ...
+    @staticmethod
+    def of(meshes: Iterable[Any], *, materials: Sequence[dict[str, Any] | None] | None = ...,
+           threads: int = ...) -> Scene: ...
     @property
     def world(self) -> World: ...
     @property

@@ -2,8 +2,8 @@
 import math
 
 from . import _grelha
-from ._geometry import flag
-from ._world import World, _expect_unmade
+from ._geometry import flag, shown
+from ._world import World, _expect_unmade, _joined
 
 
 def _restored(cls, state, masks=None):
@@ -31,6 +31,26 @@ class Scene:
     def __init__(self, vertices, faces, *, colors=None, smooth=None, material=None, threads=0):
         _expect_unmade(self)
         self._begin(_grelha.scene_of_mesh(vertices, faces, colors, smooth, material, threads))
+
+    @staticmethod
+    def of(meshes, *, materials=None, threads=0):
+        """A Scene of several meshes, in light grey or each with its material.
+
+        meshes      as World.of takes them
+        materials   a sequence with a dict for each mesh, as of Scene, or None in its place
+
+        scene.world.update_mesh() and set_visible() move a mesh and hide it. Camera and lights stay.
+        With materials it takes no add_mesh().
+        Raises TypeError or ValueError that names the argument.
+        """
+        joined = _joined(meshes)
+        count = len(joined[2])
+        if materials is not None and not isinstance(materials, (list, tuple)):
+            raise TypeError(f"materials: expected a list of dicts, found {shown(materials)}")
+        if materials is not None and len(materials) != count:
+            raise ValueError(f"materials: expected {count}, one for each mesh, found "
+                             f"{len(materials)}")
+        return Scene._of(_grelha.scene_of_meshes(*joined, list(materials or []), threads))
 
     @classmethod
     def _of(cls, core, masks=None):

@@ -34,6 +34,18 @@ def _arrays_of(mesh, name):
     return np.asarray(vertices), np.asarray(faces).astype(np.int64)
 
 
+def _joined(meshes):
+    """Vertices and faces of several meshes one after the other, and how many each has."""
+    if not isinstance(meshes, Iterable):
+        raise TypeError(f"meshes: expected a sequence of meshes, found {shown(meshes)}")
+    pairs = [_arrays_of(mesh, f"mesh {i}") for i, mesh in enumerate(meshes)]
+    counts = np.array([(len(v), len(f)) for v, f in pairs], np.int64).reshape(-1, 2)
+    firsts = np.cumsum(counts[:, 0]) - counts[:, 0]
+    vertices = [np.zeros((0, 3), np.float32), *(v for v, _ in pairs)]
+    faces = [np.zeros((0, 3), np.int64), *(f + k for (_, f), k in zip(pairs, firsts))]
+    return np.concatenate(vertices), np.concatenate(faces), counts
+
+
 class World:
     """Triangles, ready for queries.
 
@@ -88,15 +100,7 @@ class World:
         mesh_of() tells whose they are. float64 in one makes all float64. Raises as World does, with
         the number of the mesh.
         """
-        if not isinstance(meshes, Iterable):
-            raise TypeError(f"meshes: expected a sequence of meshes, found {shown(meshes)}")
-        pairs = [_arrays_of(mesh, f"mesh {i}") for i, mesh in enumerate(meshes)]
-        counts = np.array([(len(v), len(f)) for v, f in pairs], np.int64).reshape(-1, 2)
-        firsts = np.cumsum(counts[:, 0]) - counts[:, 0]
-        vertices = [np.zeros((0, 3), np.float32), *(v for v, _ in pairs)]
-        faces = [np.zeros((0, 3), np.int64), *(f + k for (_, f), k in zip(pairs, firsts))]
-        return World._of(_grelha.meshes(np.concatenate(vertices), np.concatenate(faces), counts,
-                                        threads))
+        return World._of(_grelha.meshes(*_joined(meshes), threads))
 
     def __getattr__(self, name):  # only what is not there
         if name in ("_core", "_masks"):
@@ -436,7 +440,8 @@ class World:
     def signed_distance(self, points, *, inside="closed", threads=0):
         """The distance to the nearest surface, negative inside by a rule.
 
-        inside   "closed", "odd", "nonzero" or "winding", as contains() describes
+        inside   "closed", "odd", "nonzero" or "winding", as contains() describes. "winding" jumps
+                 from -d to +d in holes, where the winding number passes 1/2.
 
         Returns float32 of shape (...) for points of shape (..., 3), a float for one point. inf if
         the World is empty. Raises as contains() does.

@@ -27,7 +27,7 @@ import sys
 
 import numpy as np
 
-from ._geometry import array_of, barycentric, numbers, points_along, shown, whole_number
+from ._geometry import array_of, barycentric, normals, numbers, points_along, shown, whole_number
 from ._world import World
 
 __all__ = ["ProximityQuery", "RayMeshIntersector", "closest_point", "install", "signed_distance",
@@ -197,6 +197,18 @@ class _InPlaceOfRayTriangle(RayMeshIntersector):
         return super().intersects_id(ray_origins, ray_directions, **kwargs)
 
 
+def _length(rows):
+    return np.sqrt(np.einsum("...j,...j->...", rows, rows))
+
+
+def _closest(ray, points, face):
+    """The nearest points of triangles, (n, 3), and their barycentric weights, (n, 3)."""
+    corners = ray._vertices[ray._faces[face]].astype(np.float64)
+    u, v = barycentric(points, corners).T
+    weights = np.stack([1 - u - v, u, v], axis=-1)
+    return np.einsum("nk,nkj->nj", weights, corners), weights
+
+
 class ProximityQuery:
     """Nearest points of one mesh, which may change as that of RayMeshIntersector.
 
@@ -207,25 +219,28 @@ class ProximityQuery:
         """mesh: has .vertices and .faces."""
         self._own = RayMeshIntersector(mesh)
         self._mesh = mesh
-        self._of_vertices = None, None
+        self._of_vertices = self._around = None, None
 
     def on_surface(self, points):
         """The nearest point of the mesh to each of points (n, 3).
 
-        Returns closest (n, 3) float64, distance (n,) float64 and triangle_id (n,) int64: at an edge
-        or a vertex the lowest. Of an empty mesh the points, inf and -1.
+        Returns closest (n, 3) float64, distance (n,) float64 and triangle_id (n,) int64: of the
+        triangles at an edge or a vertex the one that faces the point, as in trimesh. Of an empty
+        mesh the points, inf and -1; so of points that are not finite.
         """
         points = _rows(points, "points").astype(np.float64)
         ray = self._ray()
-        found = ray._commit().closest_points(points)
-        if not len(ray._faces):
-            return points, np.full(len(points), np.inf), found.id
-        known = found.id >= 0  # not of points that are not finite
-        closest = np.where(known[:, None], found.points, np.nan)
-        corners = ray._vertices[ray._faces[found.id[known]]].astype(np.float64)
-        u, v = barycentric(points[known], corners).T[..., None]
-        closest[known] = (1 - u - v) * corners[:, 0] + u * corners[:, 1] + v * corners[:, 2]
-        return closest, np.linalg.norm(points - closest, axis=-1), found.id
+        face = ray._commit().closest_points(points).id
+        closest, distance = points.copy(), np.full(len(points), np.inf)
+        known = np.flatnonzero(face >= 0)
+        closest[known], weights = _closest(ray, points[known], face[known])
+        distance[known] = _length(points[known] - closest[known])
+        at_edge = (weights.min(axis=1) < 1e-9) & (distance[known] > _ON_SURFACE)
+        if at_edge.any():
+            row = known[at_edge]
+            corner = ray._faces[face[row], weights[at_edge].argmax(axis=1)]
+            face[row] = self._facing(ray, points[row], closest[row], face[row], corner)
+        return closest, distance, face
 
     closest_point = on_surface
 
@@ -253,8 +268,26 @@ class ProximityQuery:
         distance = np.full(len(points), np.inf)
         known = found.id >= 0
         nearest = ray._vertices[found.id[known]].astype(np.float64)
-        distance[known] = np.linalg.norm(points[known] - nearest, axis=-1)
+        distance[known] = _length(points[known] - nearest)
         return distance, found.id
+
+    def _facing(self, ray, points, closest, face, corner):
+        """The triangles at closest, of those around a corner of each, that face the points."""
+        if self._around[0] is not ray._vertices:
+            order = np.argsort(ray._faces, axis=None, kind="stable")
+            firsts = np.bincount(ray._faces.ravel() + 1, minlength=len(ray._vertices) + 1).cumsum()
+            self._around = ray._vertices, order // 3, firsts
+        _, faces, firsts = self._around
+        counts = firsts[corner + 1] - firsts[corner]
+        row = np.arange(len(points)).repeat(counts)
+        of_row = np.arange(len(row)) - (counts.cumsum() - counts)[row]
+        other = faces[firsts[corner][row] + of_row]
+        away = points[row] - closest[row]
+        farther = _length(points[row] - _closest(ray, points[row], other)[0]) - _length(away)
+        score = np.einsum("ij,ij->i", normals(ray._vertices[ray._faces[other]]), away)
+        score[farther > _ON_SURFACE] = -np.inf
+        best = np.lexsort((-other, score, row))[counts.cumsum() - 1]
+        return np.where(np.isfinite(score[best]), other[best], face)
 
     def _ray(self):
         ray = getattr(self._mesh, "ray", None)

@@ -14,6 +14,7 @@
 #include "grelha/render.hpp"
 #include "src/hear.hpp"
 #include "src/materials.hpp"
+#include "src/meshes.hpp"
 
 namespace grelha::python {
 namespace {
@@ -132,12 +133,17 @@ FileScene FileScene::of_world(const SharedModel& world) const {
   return scene;
 }
 
-FileScene FileScene::of(SceneFile file, bool in_double, int threads) {
+FileScene FileScene::without_model(SceneFile& file) {
   FileScene scene;
   RenderOptions options;
   apply_effects({}, file, options);
   scene.samples_ = options.sampling.samples;
   scene.view_ = view_of(file);
+  return scene;
+}
+
+FileScene FileScene::of(SceneFile file, bool in_double, int threads) {
+  FileScene scene = without_model(file);
   scene.model_ =
       built({{std::move(file.scene), file.frame.offset}, file.frame.scale, in_double}, threads);
   return scene;
@@ -183,6 +189,33 @@ FileScene FileScene::of_mesh(const MeshArguments& given, int threads) {
     smooth_normals(file.scene.geometry.triangles, 0, degrees);
   add_default_view(file);
   return of(std::move(file), mesh.in_double, threads);
+}
+
+FileScene FileScene::of_meshes(const MeshesArguments& given, int threads) {
+  ModelParts parts = joined_parts(given.vertices, given.faces, given.counts);
+  Triangles& t = parts.scene.geometry.triangles;
+  std::vector<Material>& materials = parts.scene.materials;
+  if (given.materials.empty())
+    materials = {default_mesh_material()};
+  else
+    t.material.resize(t.size());
+  for (const py::handle wanted : given.materials) {
+    std::vector<Material> one{default_mesh_material()};
+    if (!wanted.is_none())
+      put_material(wanted, one);
+    const Object& faces = parts.scene.geometry.objects.at(materials.size());
+    std::fill_n(t.material.begin() + faces.first_triangle,
+                faces.triangle_count,
+                std::uint32_t(materials.size()));
+    materials.push_back(one.front());
+  }
+  SceneFile file;
+  file.frame.offset = parts.scene.offset;
+  file.scene = parts.scene;
+  add_default_view(file);
+  FileScene scene = without_model(file);
+  scene.model_ = built(std::move(parts), threads);
+  return scene;
 }
 
 py::dict FileScene::camera() const {

@@ -27,6 +27,12 @@ struct MeshArguments {
   py::handle vertices, faces, colors, smooth, material;
 };
 
+/// Joined arrays, the vertices and faces of each mesh (meshes, 2), and its material or None.
+struct MeshesArguments {
+  py::handle vertices, faces, counts;
+  py::list materials;
+};
+
 class FileScene {
  public:
   /// Reads a file. Its warnings are Python's.
@@ -36,6 +42,8 @@ class FileScene {
                         int threads);
   /// A mesh as the program shows a bare PLY: its own view, three lights, light grey.
   static FileScene of_mesh(const MeshArguments& given, int threads);
+  /// Several meshes, seen in the same way.
+  static FileScene of_meshes(const MeshesArguments& given, int threads);
 
   py::tuple state() const;
   /// Throws ValueError for what state() did not make.
@@ -55,6 +63,7 @@ class FileScene {
 
  private:
   static FileScene of(SceneFile file, bool in_double, int threads);
+  static FileScene without_model(SceneFile& file);
   View view_for(const ViewArguments& given) const;
   RenderOptions options_for(const RenderArguments& given) const;
 

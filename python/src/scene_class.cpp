@@ -42,6 +42,15 @@ void define_scene(py::module_& into) {
          py::handle threads) {
         return FileScene::of_mesh({vertices, faces, colors, smooth, material}, threads_in(threads));
       });
+  module.def(
+      "scene_of_meshes",
+      [](py::handle vertices,
+         py::handle faces,
+         py::handle counts,
+         const py::list& materials,
+         py::handle threads) {
+        return FileScene::of_meshes({vertices, faces, counts, materials}, threads_in(threads));
+      });
   module.def("scene_of_file",
              [](py::handle path,
                 bool colors,

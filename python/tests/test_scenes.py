@@ -2,6 +2,7 @@
 import inspect
 import os
 import pathlib
+import pickle
 import subprocess
 import sys
 import tempfile
@@ -218,6 +219,40 @@ class Pictures(unittest.TestCase):
         balls = grelha.read(DATA / "balls.nff")
         seen = balls.surfaces(*balls.camera_rays(20, 20))
         self.assertGreater(len(np.unique(seen.colors[seen.id >= 0], axis=0)), 1)
+
+    def test_several_meshes(self):
+        vertices, faces = ball(12)
+        glows = [{"diffuse": 0, "specular": 0, "emission": color} for color in np.eye(3).tolist()]
+        meshes = [(vertices + np.float32([3 * i, 0, 0]), faces) for i in range(3)]
+        scene = grelha.Scene.of(meshes, materials=glows)
+
+        def shown(scene):
+            image = scene.render(90, 30, samples=1, background=(0, 0, 0))
+            return {tuple(p) for p in image.reshape(-1, 3).tolist()} - {(0, 0, 0)}
+
+        rgb = {(1, 0, 0), (0, 1, 0), (0, 0, 1)}
+        self.assertEqual(shown(scene), rgb)
+        self.assertEqual(scene.world.meshes, 3)
+        self.assertEqual(shown(pickle.loads(pickle.dumps(scene))), rgb)
+        scene.world.set_visible(1, False)
+        self.assertEqual(shown(scene), rgb - {(0, 1, 0)})
+        scene.world.set_visible(1, True)
+        scene.world.update_mesh(2, meshes[1][0] * np.float32([1, 0.5, 0.5]))  # inside the second
+        self.assertEqual(shown(scene), rgb - {(0, 0, 1)})
+        plain = grelha.Scene.of(meshes).render(60, 20, samples=1)
+        one = grelha.Scene(np.concatenate([v for v, _ in meshes]),
+                           np.concatenate([faces + i * len(vertices) for i in range(3)]))
+        np.testing.assert_array_equal(plain, one.render(60, 20, samples=1))
+        far = grelha.Scene.of([(v.astype(float) + FAR, f) for v, f in meshes], materials=glows)
+        self.assertEqual(shown(far), rgb)
+        self.assertEqual(grelha.Scene.of([]).world.meshes, 0)
+        for wrong in (glows[:2], [], [1, 2, 3], "abc", 5, glows[0], [{"shiny": 1}] * 3):
+            with self.assertRaisesRegex((TypeError, ValueError), "material"):
+                grelha.Scene.of(meshes, materials=wrong)
+        with self.assertRaisesRegex(ValueError, "without materials"):
+            scene.world.add_mesh(vertices, faces)
+        with self.assertRaisesRegex(ValueError, "mesh 1"):
+            grelha.Scene.of([meshes[0], (vertices, faces + 9999)])
 
     def test_material(self):
         vertices, faces = ball(12)

@@ -392,7 +392,7 @@ class Nearest(unittest.TestCase):
             distance, where = distance_to_triangles(mesh.vertices, faces, points + offset)
             found = query.on_surface(points + offset)
             self.assertEqual([a.dtype.str for a in found], ["<f8", "<f8", "<i8"])
-            np.testing.assert_allclose(found[1], distance, atol=1e-9 if np.all(offset == 0) else 1e-7)
+            np.testing.assert_allclose(found[1], distance, atol=1e-7 if np.any(offset) else 1e-9)
             np.testing.assert_allclose(found[0], where, atol=1e-7)
             inside = np.linalg.norm(points, axis=1) < 1 - 0.05
             signed = query.signed_distance(points + offset)
@@ -402,6 +402,29 @@ class Nearest(unittest.TestCase):
             nearest, index = query.vertex(points + offset)
             np.testing.assert_array_equal(index, to_vertices.argmin(1))
             np.testing.assert_allclose(nearest, to_vertices.min(1), rtol=1e-12)
+
+    def test_triangles_at_an_edge_face_the_point(self):
+        """So the triangle's normal tells the sign, as programs for trimesh compute it."""
+        vertices, faces = ball(5)
+        vertices *= np.float32([1, 1, 0.05])  # a disc with sharp edges
+        mesh = mesh_of(vertices, faces)
+        middles = (vertices[faces[:, 0]] + vertices[faces[:, 1]]) / 2
+        points = np.concatenate([vertices, middles]) * np.float64([1.5, 1.3, 4])
+        query = ProximityQuery(mesh)
+        closest, distance, face = query.on_surface(points)
+        away = points - closest
+        a, b, c = mesh.vertices[mesh.faces].swapaxes(0, 1)
+        normal = np.cross(b - a, c - a)
+        normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+        self.assertTrue(((normal[face] * away).sum(1) > 0).all())
+        touch = np.abs(mesh.vertices[mesh.faces][None] - closest[:, None, None]).max(-1) < 1e-12
+        at, around = np.nonzero(touch.any(-1))  # vertices: no other triangle faces the point more
+        score = (normal[around] * away[at]).sum(1)
+        self.assertGreater(len(at), 100)
+        self.assertTrue((score <= (normal[face[at]] * away[at]).sum(1) + 1e-12).all())
+        thin = ProximityQuery(mesh_of([[-9, 0, 0], [9, 0, 0], [0.1, 1e-3, -1e-3], [0, -9, -9]],
+                                      [[0, 1, 2], [1, 0, 3]]))  # an apex beside the long edge
+        self.assertEqual(thin.on_surface([[0.1, -1e-3, 2], [0.1, -1, 1.5]])[2].tolist(), [1, 1])
 
     def test_signs_on_the_surface(self):
         query = ProximityQuery(mesh_of(BOX, CUBE_FACES))
@@ -417,7 +440,7 @@ class Nearest(unittest.TestCase):
             query = ProximityQuery(mesh_of(BOX, CUBE_FACES))
             closest, distance, face = query.on_surface([[np.nan, 0, 0], [0, 0, 1]])
             self.assertEqual((face[0], distance[1]), (-1, 0.5))
-            self.assertTrue(np.isnan(closest[0]).all() and not distance[0] < 1e9)
+            self.assertEqual(distance[0], np.inf)
 
 
 if __name__ == "__main__":
