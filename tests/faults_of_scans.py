@@ -43,7 +43,7 @@ FAULTS = [
           "each_run(points.size(), options, work, kPoints);\n}\n\ndouble",
           "work(0, points.size());\n}\n\ndouble", "query", "Contains.Reports*"),
     Fault("an offset that stays", "kernel/world/meshes.cpp",
-          "if (vertices.in_double && choose_offset(scene))", "if (false && choose_offset(scene))",
+          "if (in_double && choose_offset(scene))", "if (false && choose_offset(scene))",
           "query", "Meshes.InDoubleAreRounded*"),
     Fault("checkpoints of other runs removed", "frontend/cli/main.cpp",
           "if (location_of(path) == location)", "if (true)", "jobs",
