@@ -29,7 +29,7 @@ class Pages(unittest.TestCase):
             done = subprocess.run([sys.executable, "-W", "error", "-c", PASTE], cwd=folder,
                                   input="\0".join(blocks), capture_output=True, text=True,
                                   check=False, timeout=250)
-        return done.stderr if done.returncode else ""
+        return (done.stderr or f"status {done.returncode}") if done.returncode else ""
 
     def test_each_page(self):
         pages = [*sorted((ROOT / "docs").glob("*.md")), *sorted(ROOT.glob("*.md"))]
@@ -43,6 +43,7 @@ class Pages(unittest.TestCase):
 
     def test_a_name_that_is_missing_is_told(self):
         self.assertRegex(self.paste(["a = 1", "b = a + c"]), 'File "block 2".*\n.*NameError')
+        self.assertEqual(self.paste(["import os; os.kill(os.getpid(), 9)"]), "status -9")
 
     def test_recipes_and_scripts_named_are_there(self):
         text = (ROOT / "docs" / "python.md").read_text()
