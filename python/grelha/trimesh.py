@@ -75,7 +75,7 @@ def _is_as(array, state, name):
 def _has(mesh, name):
     """True if the mesh seems to have it. Primitives of trimesh would make it when asked."""
     kind = type(mesh)
-    return (hasattr(kind, name) or name in getattr(mesh, "__dict__", ())
+    return (hasattr(kind, name) or getattr(mesh, "__dict__", {}).get(name) is not None
             or hasattr(kind, "__getattr__"))
 
 
