@@ -61,7 +61,7 @@ FAULTS = [
           "AllHits.OfAStream*"),
     Fault("primitives counted in each of their cells", "kernel/query/lists.hpp",
           "if (seen_[at].stamp == stamp_)\n        continue;", "", "query",
-          "AllHits.OfAStream*"),
+          "Agreement.*"),
     Fault("boxes outside of grids without their slack", "kernel/traverse/ray.hpp",
           "kOutsideSlack = 1.000001f", "kOutsideSlack = 1", "query", "Agreement.*"),
     Fault("boxes outside of grids before t_min < 0", "kernel/traverse/one_ray.hpp",
