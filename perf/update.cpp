@@ -4,8 +4,8 @@
 //
 // update [--scene NAME]... [--frames N]
 //
-// A scene is a file, `GENERATOR SIZE`, `balls`, or `meshes N`: N meshes of 1520 triangles, of which
-// the one in the middle moves alone.
+// A scene is a file, `GENERATOR SIZE`, `balls`, `meshes N` (N meshes of 1520 triangles, of which the
+// one in the middle moves alone) or `ground N` (one alone moves over a ground of 2 N^2).
 //
 // Prints a table of Markdown: milliseconds a frame, the median. Grelha: World::update() and one
 // stream of rays. Embree (robust): a commit after the vertices are copied, and its fastest way of
@@ -83,6 +83,37 @@ SceneFile meshes(int count) {
   return file;
 }
 
+/// A body over a rough ground of 2 n^2 triangles, seen from above; the body is the first object.
+SceneFile over_ground(int n) {
+  SceneFile file = meshes(1);
+  Triangles& t = file.scene.geometry.triangles;
+  const auto first_vertex = static_cast<std::uint32_t>(t.vertex_count());
+  const auto first = static_cast<std::uint32_t>(t.size()), row = static_cast<std::uint32_t>(n) + 1;
+  test::Random random(1);
+  const double step = 20. / n;
+  for (int i = 0; i <= n; ++i)
+    for (int k = 0; k <= n; ++k) {
+      t.x.push_back(static_cast<float>(step * i - 10));
+      t.y.push_back(static_cast<float>(random.in(-1.5 - step, -1.5)));
+      t.z.push_back(static_cast<float>(step * k - 10));
+    }
+  const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    t.a.push_back(first_vertex + a);
+    t.b.push_back(first_vertex + b);
+    t.c.push_back(first_vertex + c);
+    t.material.push_back(0);
+  };
+  for (std::uint32_t v = 0; v < row * (row - 1); ++v)
+    if (v % row != row - 1) {
+      add(v, v + 1, v + row + 1);
+      add(v, v + row + 1, v + row);
+    }
+  file.scene.geometry.objects.push_back({first, static_cast<std::uint32_t>(t.size()) - first});
+  file.camera.eye = {0, 12, 16};
+  file.camera.at = {0, -1, 0};
+  return file;
+}
+
 /// A scene at each frame.
 class Moving {
  public:
@@ -148,10 +179,15 @@ EmbreeMode fastest(EmbreeScene& scene, const RayBuffer& rays) {
 }
 
 void run(const std::string& name, int frames) {
-  const bool are_meshes = name.starts_with("meshes ");
-  const int count = are_meshes ? std::max(1, std::atoi(name.c_str() + 7)) : 0;
-  const std::size_t object = are_meshes ? static_cast<std::size_t>(count / 2) : EmbreeScene::kAll;
-  SceneFile file = name == "balls" ? balls() : are_meshes ? meshes(count) : scene_named(name);
+  const bool are_meshes = name.starts_with("meshes "), is_ground = name.starts_with("ground ");
+  const int count = are_meshes || is_ground ? std::max(1, std::atoi(name.c_str() + 7)) : 0;
+  const std::size_t object = are_meshes  ? static_cast<std::size_t>(count / 2)
+                             : is_ground ? 0
+                                         : EmbreeScene::kAll;
+  SceneFile file = name == "balls" ? balls()
+                   : are_meshes    ? meshes(count)
+                   : is_ground     ? over_ground(count)
+                                   : scene_named(name);
   file.scene.geometry.planes = {};
   file.scene.geometry.cones = {};
   file.camera.width = file.camera.height = 256;
@@ -208,7 +244,14 @@ int main(int argc, char** argv) {
     return 2;
   }
   if (scenes.empty()) {
-    scenes = {"balls", "mount 6", "mount 7", "mount 8", "meshes 16", "meshes 100"};
+    scenes = {"balls",
+              "mount 6",
+              "mount 7",
+              "mount 8",
+              "meshes 16",
+              "meshes 100",
+              "meshes 400",
+              "ground 1000"};
     const std::string bunny = GRELHA_SHARED_SCENES "/ply/bunny.ply";
     if (std::filesystem::exists(bunny))
       scenes.push_back(bunny);

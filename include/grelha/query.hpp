@@ -111,10 +111,6 @@ struct SurfacePoint {
   /// Jakob and Humphreys, PBR 4th ed., 6.8. A shadow ray starts at this origin, its direction is
   /// the light's position minus this origin, and its t_max is 1.
   Float3 start(Float3 dir) const;
-  /// The same by a former name, for one version more.
-  [[deprecated("use start()")]] Float3 offset_origin(Float3 dir) const { return start(dir); }
-  /// The same by a former name, for one version more.
-  [[deprecated("use start()")]] Float3 leave(Float3 dir) const { return start(dir); }
 };
 
 /// Computes the surface point of a `hit` that closest() returned for `ray`. Throws

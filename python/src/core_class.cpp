@@ -92,7 +92,7 @@ void define_making(Counted<py::module_> module, CoreClass core) {
   core.def("meshes_moved",
            [](const Core& self, const py::list& moves, const char* method, py::handle threads) {
              const int count = threads_in(threads);
-             return Core{meshes_moved(*self.model, moves, method, count)};
+             return Core{meshes_moved(self.model, moves, method, count)};
            });
   core.def("mesh_removed", [](const Core& self, py::handle mesh, py::handle threads) {
     const int count = threads_in(threads);
@@ -100,12 +100,12 @@ void define_making(Counted<py::module_> module, CoreClass core) {
   });
   core.def("mesh_shown", [](const Core& self, py::handle mesh, bool visible, py::handle threads) {
     const int count = threads_in(threads);
-    return Core{mesh_shown(*self.model, mesh, visible, count)};
+    return Core{mesh_shown(self.model, mesh, visible, count)};
   });
   core.def("mesh_added",
            [](const Core& self, py::handle vertices, py::handle faces, py::handle threads) {
              const int count = threads_in(threads);
-             return Core{mesh_added(*self.model, vertices, faces, count)};
+             return Core{mesh_added(self.model, vertices, faces, count)};
            });
   core.def("is_visible",
            [](const Core& self, py::handle mesh) { return mesh_is_visible(*self.model, mesh); });

@@ -24,7 +24,7 @@ class Counted {
   Scope& scope_;
 };
 
-/// What a World of Python's has. It does not change: update() makes another.
+/// What a World of Python's has. A model that anything else shares does not change.
 struct Core {
   SharedModel model;
 };

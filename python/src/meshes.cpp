@@ -61,6 +61,20 @@ bool becomes_double(const Model& before, const Triples& given) {
   return before.in_double || (before.frame.scale == 1 && given.in_double());
 }
 
+constexpr std::size_t kMostInPlace = std::size_t{1} << 15;  ///< faces: built in milliseconds
+constexpr std::size_t kMostGrids = 16;                      ///< meshes, each with a grid
+constexpr std::size_t kMostShared = std::size_t{1} << 20;   ///< faces that may share one more grid
+
+/// The model itself where it may change: no query and no Scene shares it, floats keep its frame,
+/// and so little is built that Python's lock is kept meanwhile. Null: a changed copy is due.
+Model* model_to_change(const SharedModel& model, std::size_t faces, bool in_double) {
+  const OffsetScene& scene = model->scene();
+  const bool is_quick = faces <= kMostInPlace && (mesh_count(scene) <= kMostGrids ||
+                                                  scene.geometry.triangles.size() <= kMostShared);
+  const bool is_sole = model.use_count() == 1 && !in_double;
+  return is_sole && is_quick ? const_cast<Model*>(model.get()) : nullptr;
+}
+
 /// Vertices that may be those of a mesh. Throws ValueError.
 Triples vertices_for(const Model& before, std::size_t mesh, py::handle given) {
   const MeshRange range = mesh_range(before.scene(), mesh);
@@ -92,16 +106,19 @@ ModelParts joined_parts(py::handle vertices, py::handle faces, py::handle given)
   return parts;
 }
 
-SharedModel meshes_moved(const Model& before,
+SharedModel meshes_moved(const SharedModel& model,
                          const py::list& given,
                          const char* method,
                          int threads) {
+  const Model& before = *model;
+  std::size_t faces = 0;
   std::vector<std::size_t> numbers;
   std::vector<Triples> vertices;
   bool in_double = before.in_double;
   for (const py::handle pair : given) {
     const auto move = py::reinterpret_borrow<py::tuple>(pair);
     numbers.push_back(mesh_in(move[0], before, method));
+    faces += mesh_range(before.scene(), numbers.back()).triangles.triangle_count;
     vertices.push_back(vertices_for(before, numbers.back(), move[1]));
     in_double |= becomes_double(before, vertices.back());
   }
@@ -109,18 +126,33 @@ SharedModel meshes_moved(const Model& before,
   std::vector<MeshMove> moves;
   for (std::size_t i = 0; i < numbers.size(); ++i)
     moves.push_back({numbers[i], placed.emplace_back(vertices[i], before, in_double).array});
+  if (Model* const same = model_to_change(model, faces, in_double)) {
+    move_meshes(same->owner, moves, {.threads = threads});
+    return model;
+  }
   ModelParts parts{before.scene(), before.frame.scale, in_double};
   const std::vector<Object> moved = move_meshes(parts.scene, moves);
   return built(std::move(parts), threads, &before, moved);
 }
 
-SharedModel mesh_shown(const Model& before, py::handle mesh, bool visible, int threads) {
+SharedModel mesh_shown(const SharedModel& model, py::handle mesh, bool visible, int threads) {
+  const Model& before = *model;
+  const std::size_t number = mesh_in(mesh, before, "set_visible");
+  const std::size_t faces = mesh_range(before.scene(), number).triangles.triangle_count;
+  if (Model* const same = model_to_change(model, faces, false)) {
+    show_mesh(same->owner, number, visible, {.threads = threads});
+    return model;
+  }
   ModelParts parts{before.scene(), before.frame.scale, before.in_double};
-  show_mesh(parts.scene, mesh_in(mesh, before, "set_visible"), visible);
+  show_mesh(parts.scene, number, visible);
   return built(std::move(parts), threads, &before);
 }
 
-SharedModel mesh_added(const Model& before, py::handle vertices, py::handle faces, int threads) {
+SharedModel mesh_added(const SharedModel& model,
+                       py::handle vertices,
+                       py::handle faces,
+                       int threads) {
+  const Model& before = *model;
   if (!before.is_one_mesh())
     throw py::value_error("add_mesh: expected a World of triangles alone");
   const ModelParts added = mesh_parts(vertices, faces);
@@ -131,6 +163,10 @@ SharedModel mesh_added(const Model& before, py::handle vertices, py::handle face
   std::vector<std::array<std::uint32_t, 3>> corners;
   for (std::size_t i = 0; i < t.size(); ++i)
     corners.push_back({t.a[i], t.b[i], t.c[i]});
+  if (Model* const same = model_to_change(model, corners.size(), in_double)) {
+    add_mesh(same->owner, {placed.array, corners}, {.threads = threads});
+    return model;
+  }
   ModelParts parts{before.scene(), before.frame.scale, in_double};
   const Object moved = add_mesh(parts.scene, {placed.array, corners});
   return built(std::move(parts), threads, &before, {&moved, 1});

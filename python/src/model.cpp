@@ -80,7 +80,7 @@ SharedModel built(ModelParts parts,
   const std::size_t n = g.planes.size() + g.spheres.size() + g.triangles.size() + g.cones.size();
   hear_signals(n, [&](const Progress& progress) {
     const BuildOptions options{.threads = threads, .progress = progress};
-    model = std::make_shared<const Model>(std::move(parts), options, before, moved);
+    model = std::make_shared<Model>(std::move(parts), options, before, moved);
   });
   return model;
 }

@@ -20,7 +20,7 @@ struct ModelParts {
   bool in_double = false;  ///< points are given back in double
 };
 
-/// Immutable, so queries on several threads may share it.
+/// It does not change while it is shared, so queries on several threads may share it.
 struct Model {
   OwningWorld owner;
   Frame frame;  ///< in which the scene lies

@@ -12,7 +12,8 @@ import sys
 import tempfile
 import unittest
 
-FILES = "test_ray", "test_proximity", "test_sample", "test_primitives"
+FILES = ("test_ray", "test_proximity", "test_sample", "test_thickness", "test_voxel",
+         "test_primitives", "test_section", "test_registration", "test_copy")
 INSTALL = """
 import grelha.trimesh
 grelha.trimesh.install()

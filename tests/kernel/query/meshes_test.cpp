@@ -386,7 +386,7 @@ class RandomChanges {
 };
 
 TEST(Meshes, ThatChangeAtRandomAreThoseOfANewWorld) {
-  for (std::uint64_t run = 0; run < 200 && !HasFailure(); ++run) {
+  for (std::uint64_t run = 0; run < 1000 && !HasFailure(); ++run) {
     RandomChanges changes(run);
     for (int step = 0; step < 12; ++step) {
       changes.change();
