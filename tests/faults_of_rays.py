@@ -163,7 +163,7 @@ FAULTS = [
     Fault("lengths without rounding", "kernel/query/nearest_search.hpp",
           "kLengthError = 8 * kEps;", "kLengthError = 0;", "query", "*WithoutBounds"),
     Fault("squares of distances without rounding", "kernel/query/nearest_search.hpp",
-          "16 * double{kEps} * magnitude(beside)", "0 * magnitude(beside)", "query",
+          "16 * double{kEps} * magnitude(excess)", "0 * magnitude(excess)", "query",
           "*WithoutBounds"),
     Fault("cones without rounding", "kernel/query/nearest_search.hpp",
           "kBesideError = 32 * kEps;", "kBesideError = 0;", "query", "*WithoutBounds"),

@@ -100,10 +100,7 @@ struct SurfacePoint {
   /// unit shading normal, on the same side: interpolated vertex normals if the triangle has them,
   /// else `normal`
   Float3 shading;
-  union {
-    float offset;  ///< distance along the normal where a point is certainly off the surface
-    float away;    ///< the same by its former name, for one version more
-  };
+  float offset;            ///< distance along the normal where a point is certainly off the surface
   std::uint32_t material;  ///< index into the scene's materials
   /// Returns the origin of a ray that leaves the surface in direction `dir`, to be traced with
   /// t_min = 0. The ray does not hit this surface again if it points away from it. It misses

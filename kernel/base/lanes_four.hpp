@@ -110,10 +110,10 @@ inline unsigned bits(const FourInts& mask) {
 inline bool any(const FourInts& mask) {
   return bits(mask) != 0;
 }
-inline float least(const Four& a) {
+inline float reduce_min(const Four& a) {
   return together(a, TakeLeast{})[0];
 }
-inline float most(const Four& a) {
+inline float reduce_max(const Four& a) {
   return together(a, TakeMost{})[0];
 }
 

@@ -292,11 +292,11 @@ template <int h, class V>
 /// Two places of `a`, then two of `b`, of each four lanes; `places` as of _mm_shuffle_ps.
 template <unsigned places, class V>
 [[gnu::always_inline]] inline V shuffled(const V& a, const V& b) {
-  constexpr auto place = [](std::size_t i) {
+  constexpr auto lane = [](std::size_t i) {
     return i / 4 * 4 + (places >> 2 * (i % 4) & 3) + (i % 4 < 2 ? 0 : VFloat::size);
   };
   return [&]<std::size_t... i>(std::index_sequence<i...>) {
-    return __builtin_shufflevector(a, b, place(i)...);
+    return __builtin_shufflevector(a, b, lane(i)...);
   }
   (std::make_index_sequence<VFloat::size>());
 }
@@ -309,10 +309,10 @@ template <class V, class Take>
     return folded(take(half<0>(a), half<1>(a)), take);
 }
 inline float lane_min(const VFloat& a) {
-  return least(folded(vector(a), TakeLeast{}));
+  return reduce_min(folded(vector(a), TakeLeast{}));
 }
 inline float lane_max(const VFloat& a) {
-  return most(folded(vector(a), TakeMost{}));
+  return reduce_max(folded(vector(a), TakeMost{}));
 }
 template <class Take>
 [[gnu::always_inline]] inline void reduce_lanes(const VFloat (&of)[4],

@@ -50,9 +50,9 @@ struct Pages {
 };
 
 Pages pages_of(std::size_t size, const void* memory, std::size_t bytes) {
-  const auto place = reinterpret_cast<std::uintptr_t>(memory);
-  const std::uintptr_t begin = (place + size - 1) / size * size;
-  return {begin, std::max(begin, (place + bytes) / size * size)};
+  const auto address = reinterpret_cast<std::uintptr_t>(memory);
+  const std::uintptr_t begin = (address + size - 1) / size * size;
+  return {begin, std::max(begin, (address + bytes) / size * size)};
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ struct RawAllocator {
 
  private:
   static constexpr std::size_t kLine = 64;
-  /// Times the bytes asked for: most that is taken so that the last page is a large one too.
+  /// At most kMaxReserve * bytes asked for are taken so that the last page is a large one too.
   static constexpr double kMaxReserve = 1.125;
 
   static std::size_t alignment(std::size_t n) {

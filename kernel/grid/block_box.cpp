@@ -10,7 +10,7 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// Times a grid's pad: how far boxes reach beyond the error of hits. A slab test in float is off by
+/// Boxes reach kSlabPadding * pad beyond the error of hits. A slab test in float is off by
 /// 3 u of the distance to each plane, which is at most 2.8 near distances of the grid, and compares
 /// two such values: 17 u near distances. A quarter of a pad is 64 u.
 constexpr double kSlabPadding = .25;

@@ -26,13 +26,13 @@ class OctantSweep {
   void run() {
     for (std::ptrdiff_t k = 0; k < n_[2]; ++k)
       for (std::ptrdiff_t j = 0; j < n_[1]; ++j)
-        row(place(1, j), place(2, k));
+        row(index_of(1, j), index_of(2, k));
   }
 
  private:
   bool is_down(int axis) const { return octant_ >> axis & 1; }
   /// The i-th position along an axis, the last on the way of the octant first.
-  std::ptrdiff_t place(int axis, std::ptrdiff_t i) const {
+  std::ptrdiff_t index_of(int axis, std::ptrdiff_t i) const {
     return is_down(axis) ? i : n_[axis] - 1 - i;
   }
   std::ptrdiff_t next(int axis, std::ptrdiff_t i) const { return is_down(axis) ? i - 1 : i + 1; }
@@ -49,7 +49,7 @@ class OctantSweep {
     const std::uint8_t* const a = found(next(1, y), z);
     const std::uint8_t* const b = found(y, next(2, z));
     const std::uint8_t* const c = found(next(1, y), next(2, z));
-    // where x goes down, a row stands a place further on, behind the border of the grid
+    // where x goes down, a row stands one index further on, behind the border of the grid
     std::uint8_t* const least = least_.data() + is_down(0);
     for (std::ptrdiff_t x = 0; x < n_[0]; ++x)
       least[x] = std::min(std::min(a[x], b[x]), c[x]);

@@ -287,11 +287,11 @@ class BucketLists {
       f_.primitives.visit(pair.id, [&]<class Shape>(std::uint32_t i) {
         auto& list = f_.store.of<Shape>();
         const std::size_t kind = kNumber<Shape>;
-        const std::uint32_t place = written(kind, pair.cell - begin_)++;
+        const std::uint32_t slot = written(kind, pair.cell - begin_)++;
         if constexpr (Shape::kInBlocks)
-          triangles_of(pair.cell)[place] = pair.id;
+          triangles_of(pair.cell)[slot] = pair.id;
         else
-          list.put(list.first[pair.cell] + place, f_.primitives.of<Shape>()[i], pair.id);
+          list.put(list.first[pair.cell] + slot, f_.primitives.of<Shape>()[i], pair.id);
       });
     });
   }

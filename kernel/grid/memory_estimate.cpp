@@ -111,7 +111,7 @@ double ids_bytes(const std::vector<std::uint32_t>& ids) {
 }
 
 double ids_bytes(const Plan& plan) {
-  double sum = ids_bytes(plan.apart);
+  double sum = ids_bytes(plan.ungridded);
   for (const GridPlan& part : plan.parts)
     sum += ids_bytes(part.ids.list);
   return sum;
@@ -128,7 +128,7 @@ double setup_bytes(const Primitives& p) {
 /// The list of primitives without a grid, as one cell.
 Lists of_outside(const Primitives& p, const Plan& plan) {
   Lists lists;
-  for (const std::uint32_t id : plan.apart)
+  for (const std::uint32_t id : plan.ungridded)
     ++lists.references[static_cast<std::size_t>(p.kind_of(id))];
   lists.blocks = lists.references[kTriangles] / kBlock + 1;
   return lists;

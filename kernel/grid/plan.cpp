@@ -20,13 +20,13 @@ constexpr std::size_t kFewest = 8;
 constexpr std::size_t kMostOutside = 32;  ///< primitives without a grid, each tested by every ray
 /// triangles; smaller objects share the grid of the loose ones
 constexpr std::size_t kSmallObject = 256;
-/// times the diagonal of the group's box: larger primitives get no grid
+/// Primitives longer than kHuge * diagonal of their group's box get no grid.
 constexpr double kHuge = .5;
-/// a cell: more would not make its lists shorter
+/// Pads a cell: more would not make its lists shorter.
 constexpr double kMostPads = 64;
 /// Scenes' diagonals: rays seldom start further away.
 constexpr double kFarEnough = 4;
-/// Times the scene's diagonal: error of rays that are moved to a grid in double, 100 roundings.
+/// Rays moved to a grid in double: error <= kDoublesOff * scene's diagonal, 100 roundings.
 constexpr double kDoublesOff = 0x1p-46;
 /// M; packets like it coarser than the report's 2 (docs/performance.md)
 constexpr double kDensity = .7;
@@ -70,14 +70,14 @@ void append(Ids& to, std::uint32_t first, std::uint32_t end) {
 
 /// Numbers of the objects that get grids of their own, as many as may: visible ones that are not
 /// small, those that overlap favoured ranges first.
-std::vector<std::size_t> objects_apart(std::span<const Object> objects,
-                                       std::span<const Object> favoured) {
-  std::vector<std::size_t> apart;
+std::vector<std::size_t> own_grid_objects(std::span<const Object> objects,
+                                          std::span<const Object> favoured) {
+  std::vector<std::size_t> own;
   std::vector<char> taken(objects.size());
   const auto take = [&](std::size_t i) {
-    if (apart.size() + 1 < static_cast<std::size_t>(kMostGrids) && objects[i].visible &&
+    if (own.size() + 1 < static_cast<std::size_t>(kMostGrids) && objects[i].visible &&
         objects[i].triangle_count >= kSmallObject && !std::exchange(taken[i], 1))
-      apart.push_back(i);
+      own.push_back(i);
   };
   const auto end_of = [](const Object& o) {
     return std::uint64_t{o.first_triangle} + o.triangle_count;
@@ -89,7 +89,7 @@ std::vector<std::size_t> objects_apart(std::span<const Object> objects,
   }
   for (std::size_t i = 0; i < objects.size(); ++i)
     take(i);
-  return apart;
+  return own;
 }
 
 /// Groups of ids, one per grid: first what shares one, then objects with one each.
@@ -104,9 +104,9 @@ struct Groups {
 /// each.
 void group_triangles(const Primitives& p, std::span<const Object> favoured, Groups& groups) {
   const std::span<const Object> objects = p.geometry.objects;
-  std::vector<char> is_apart(objects.size());
-  for (const std::size_t i : objects_apart(objects, favoured)) {
-    is_apart[i] = 1;
+  std::vector<char> has_own_grid(objects.size());
+  for (const std::size_t i : own_grid_objects(objects, favoured)) {
+    has_own_grid[i] = 1;
     groups.own.push_back(objects[i]);
   }
   const std::uint32_t first_id = p.ids.begin(PrimitiveKind::kTriangle);
@@ -116,9 +116,11 @@ void group_triangles(const Primitives& p, std::span<const Object> favoured, Grou
     const std::uint32_t first = first_id + o.first_triangle;
     groups.ids.front().add({next, first});
     next = first + o.triangle_count;
-    if (is_apart[i])
+    if (has_own_grid[i])
       groups.ids.emplace_back();
-    IdGroup& to = !o.visible ? groups.hidden : is_apart[i] ? groups.ids.back() : groups.ids.front();
+    IdGroup& to = !o.visible        ? groups.hidden
+                  : has_own_grid[i] ? groups.ids.back()
+                                    : groups.ids.front();
     to.add({first, next});
   }
   groups.ids.front().add({next, p.ids.end(PrimitiveKind::kTriangle)});
@@ -308,8 +310,8 @@ class Planner {
       Ids ids = groups_[i].take_list();
       const std::size_t all = ids.size();
       const Extent extent = remove_outliers(ids, extents_[i]);
-      if (ids.size() <= kFewest && plan_.apart.size() + ids.size() <= kMostOutside)
-        append(plan_.apart, ids);
+      if (ids.size() <= kFewest && plan_.ungridded.size() + ids.size() <= kMostOutside)
+        append(plan_.ungridded, ids);
       else if (!ids.empty()) {
         const bool is_whole = ids.size() == all;
         plan_group(std::move(ids), extent.box);
@@ -325,8 +327,8 @@ class Planner {
   /// The plan; what no grid was planned for is apart.
   Plan finish() {
     for (IdGroup& ids : groups_)
-      append(plan_.apart, ids.take_list());
-    std::sort(plan_.apart.begin(), plan_.apart.end());
+      append(plan_.ungridded, ids.take_list());
+    std::sort(plan_.ungridded.begin(), plan_.ungridded.end());
     plan_.memory = std::move(memory_);
     return std::move(plan_);
   }
@@ -359,8 +361,8 @@ class Planner {
 
   /// Takes out the primitives that one grid does not suit; returns the extent of the rest.
   Extent remove_outliers(Ids& ids, Extent before) {
-    Extent extent = remove_huge(p_, ids, before, plan_.apart, threads_);
-    if (remove_few_outliers(p_, ids, plan_.apart))
+    Extent extent = remove_huge(p_, ids, before, plan_.ungridded, threads_);
+    if (remove_few_outliers(p_, ids, plan_.ungridded))
       extent = extent_of(p_, ids, threads_);
     auto clusters = take_clusters(
         p_, ids, extent.box, density_, static_cast<std::size_t>(kMostGrids) - groups_.size());

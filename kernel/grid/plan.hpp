@@ -199,8 +199,8 @@ struct PlanMemory {
 
 struct Plan {
   std::vector<GridPlan> parts;
-  std::vector<std::uint32_t> apart;  ///< ids without a grid, ascending
-  Box all;                           ///< of everything finite
+  std::vector<std::uint32_t> ungridded;  ///< ids without a grid, ascending
+  Box all;                               ///< of everything finite
   PlanMemory memory;
 };
 

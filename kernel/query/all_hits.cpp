@@ -8,7 +8,7 @@
 namespace grelha {
 namespace {
 
-/// Times t: crossings of one primitive so near count as one.
+/// Crossings of one primitive count as one where they are within kSameCrossing * t.
 constexpr double kSameCrossing = 0x1p-45;
 
 /// The hits of a ray.

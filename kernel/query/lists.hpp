@@ -27,7 +27,7 @@ inline bool crosses_perturbed(const ExactRay& ray, const Triangle::Fields<float>
   return (bound.sure && bound.hi < ray.t_max) || crosses_perturbed(ray, triangle.corner);
 }
 
-/// Times a sum of the sizes of products: error of a normal times a direction in double, 8 u.
+/// A normal times a direction in double: error <= kFacingError * sum of the sizes of products, 8 u.
 inline constexpr double kFacingError = 16 * 0x1p-53;
 
 /// crosses_front(), by doubles where they tell.

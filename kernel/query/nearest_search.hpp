@@ -14,13 +14,13 @@
 
 namespace grelha::GRELHA_ISA {
 
-/// Times the magnitudes of its terms: error of a product of vectors, 5 u.
+/// A product of vectors: error <= kAlongError * sum of the sizes of its terms, 5 u.
 inline constexpr float kAlongError = 8 * kEps;
-/// Times a length: its error, 4 u of its square.
+/// error <= kLengthError * length, 4 u of its square.
 inline constexpr float kLengthError = 8 * kEps;
-/// Times the size of what is seen from afar: error of SearchBall::beside(), 50 u.
-inline constexpr float kBesideLost = 64 * kEps;
-/// Times a cone and the way to it: error of where a point lies beside its axis, 15 u.
+/// SearchBall::min_distance(): error <= kDistanceLost * size of what is seen from afar, 50 u.
+inline constexpr float kDistanceLost = 64 * kEps;
+/// A point's distance to a cone's axis: error <= kBesideError * (cone + distance to it), 15 u.
 inline constexpr float kBesideError = 32 * kEps;
 /// More than what underflows in a product, and in a length.
 inline constexpr float kLostProduct = 0x1p-140f;
@@ -34,7 +34,7 @@ class SearchBall {
  public:
   Vec3<Block> center;
   float radius = 0;  ///< of no primitive found so far, infinity
-  float reach = 0;   ///< of boxes that the ball reaches, beside() is no more
+  float reach = 0;   ///< of boxes that the ball reaches, min_distance() is no more
 
   /// Around p, for boxes within a box.
   SearchBall(const float (&p)[3], const float (&lo)[3], const float (&hi)[3])
@@ -51,23 +51,23 @@ class SearchBall {
       return;
     away_ = square_root(squared);
     unit_ = 1 / away_;
-    lost_ = double{kBesideLost} * (2 * size + size * size * unit_);
+    lost_ = double{kDistanceLost} * (2 * size + size * size * unit_);
     from_ = {Block(from[0]), Block(from[1]), Block(from[2])};
     const auto twice = [&](double x) { return Block(static_cast<float>(2 * x * unit_)); };
     twice_ = {twice(way[0]), twice(way[1]), twice(way[2])};
   }
   void shrink(double r) {
-    const double beside = (r - away_) * (r + away_) * unit_;
-    reach = static_cast<float>(beside + 16 * double{kEps} * magnitude(beside) + lost_);
+    const double excess = (r - away_) * (r + away_) * unit_;
+    reach = static_cast<float>(excess + 16 * double{kEps} * magnitude(excess) + lost_);
     radius = static_cast<float>(r * (1 + 4 * double{kEps}) + double{kLostLength});
   }
   bool is_far() const { return away_ > 0; }
   /// Of points x: a number that grows with the distance.
-  [[gnu::always_inline]] Block beside(const Vec3<Block>& x) const {
+  [[gnu::always_inline]] Block min_distance(const Vec3<Block>& x) const {
     const Vec3<Block> e = from_ - x;
     return dot(e, twice_ + Block(static_cast<float>(unit_)) * e);
   }
-  /// How fast beside() shrinks along each axis.
+  /// How fast min_distance() shrinks along each axis.
   [[gnu::always_inline]] Vec3<Block> slope(const Vec3<Block>& x) const {
     return twice_ + Block(static_cast<float>(2 * unit_)) * (from_ - x);
   }
@@ -75,22 +75,22 @@ class SearchBall {
  private:
   Vec3<Block> from_, twice_{Block(0), Block(0), Block(0)};
   double away_ = 0, unit_ = 1;
-  double lost_ = double{kLostProduct};  ///< error of beside() that does not shrink with it
+  double lost_ = double{kLostProduct};  ///< error of min_distance() that does not shrink with it
 };
 
-/// Bits of the boxes that may reach into a ball, and beside() of their points nearest to its
+/// Bits of the boxes that may reach into a ball, and min_distance() of their points nearest to its
 /// centre.
 [[gnu::always_inline]] inline unsigned boxes_near(const SearchBall& ball,
                                                   const BlockBoxes& row,
-                                                  float (&beside)[kBlock]) {
+                                                  float (&distance)[kBlock]) {
   unsigned near = 0;
   for (int i = 0; i < kBlock; i += kWidth<Block>) {
     const auto nearest = [&](int a, const Block& center) {
       return min(max(center, load<Block>(row.side[a] + i)), load<Block>(row.side[3 + a] + i));
     };
-    const Block of = ball.beside(
+    const Block of = ball.min_distance(
         {nearest(0, ball.center.x), nearest(1, ball.center.y), nearest(2, ball.center.z)});
-    store(beside + i, of);
+    store(distance + i, of);
     const auto is_box = load<Block>(row.side[0] + i) <= load<Block>(row.side[3] + i);
     near |= bits(and_not(is_box, of > Block(ball.reach))) << i;
   }
@@ -148,24 +148,24 @@ struct BlockCorners {
     return min(max(x, min(min(a, b), c)), max(max(a, b), c));
   };
   const Vec3<Block>& p = ball.center;
-  const Block beside = ball.beside({nearest(p.x, t.a.x, t.b.x, t.c.x),
-                                    nearest(p.y, t.a.y, t.b.y, t.c.y),
-                                    nearest(p.z, t.a.z, t.b.z, t.c.z)});
+  const Block distance = ball.min_distance({nearest(p.x, t.a.x, t.b.x, t.c.x),
+                                            nearest(p.y, t.a.y, t.b.y, t.c.y),
+                                            nearest(p.z, t.a.z, t.b.z, t.c.z)});
   const Vec3<Block> corner[3] = {t.a - p, t.b - p, t.c - p};
   const Vec3<Block> n = cross(corner[1] - corner[0], corner[2] - corner[0]);
   const Block farthest = max(max(largest(corner[0]), largest(corner[1])), largest(corner[2]));
   const Block length = square_root(dot(n, n)) * Block(1 + kLengthError) + Block(kLostLength);
   const Block above = ReachAlong(n, corner, farthest).surely_beside();
-  return mask_or(beside > Block(ball.reach), above > Block(ball.radius) * length);
+  return mask_or(distance > Block(ball.reach), above > Block(ball.radius) * length);
 }
 
-/// The same from afar, of SearchBall::beside(): it is convex, so the plane that touches it at one
+/// The same from afar, of SearchBall::min_distance(): it is convex, so the plane that touches it at one
 /// corner bounds it.
 [[gnu::always_inline]] inline Mask<Block> are_beyond_afar(const SearchBall& ball,
                                                           const BlockCorners& t) {
   const Vec3<Block> slope = ball.slope(t.a);
   const Block most = max(max(dot(slope, t.b - t.a), dot(slope, t.c - t.a)), Block(0));
-  return ball.beside(t.a) - most > Block(ball.reach);
+  return ball.min_distance(t.a) - most > Block(ball.reach);
 }
 
 /// Bits of the triangles of a block that may reach into a ball.
@@ -190,8 +190,8 @@ struct BlockCorners {
   const Block distance = length(to);
   const Block radius = magnitude(load<Block>(spheres.radius + i));
   const Block error = Block(kLengthError) * (distance + radius) + Block(kLostLength);
-  const Block beside = magnitude(distance - radius);
-  return bits(beside == beside) & ~bits(beside - error > Block(ball.radius));
+  const Block gap = magnitude(distance - radius);
+  return bits(gap == gap) & ~bits(gap - error > Block(ball.radius));
 }
 
 /// Of cones: in the half plane of the axis and the centre, a side is a segment.
@@ -224,16 +224,16 @@ struct BlockCorners {
 // The search for the point of a scene that is nearest to another: down levels of boxes, the nearest
 // first.
 
-/// Times distance: error of what doubles say of it, and of coordinates (docs/numerics.md).
+/// Distance in double, and coordinates: error <= kDistanceError * distance (docs/numerics.md).
 inline constexpr double kDistanceError = 0x1p-44;
 
 /// Of some boxes of a row, by bits, the one that is nearest.
-[[gnu::always_inline]] inline int nearest_of(unsigned boxes, const float (&beside)[kBlock]) {
+[[gnu::always_inline]] inline int nearest_of(unsigned boxes, const float (&distance)[kBlock]) {
   int nearest = __builtin_ctz(boxes);
-  float least = beside[nearest];
+  float least = distance[nearest];
   each_bit(boxes & (boxes - 1), [&](int k) {
-    const bool is_less = beside[k] < least;
-    least = is_less ? beside[k] : least;
+    const bool is_less = distance[k] < least;
+    least = is_less ? distance[k] : least;
     nearest = is_less ? k : nearest;
   });
   return nearest;
@@ -243,21 +243,21 @@ inline constexpr double kDistanceError = 0x1p-44;
 class BoxStack {
  public:
   struct Entry {
-    float beside;  ///< see SearchBall
-    int level;     ///< of the row that the box stands for; -1: a cell
+    float distance;  ///< see SearchBall
+    int level;       ///< of the row that the box stands for; -1: a cell
     std::uint32_t index;
   };
 
   bool empty() const { return size_ == 0; }
   Entry pop() { return entry_[--size_]; }
   /// Boxes k of a row, `first` + k on the level below, by bits; the nearest is the next.
-  void push(unsigned boxes, const float (&beside)[kBlock], int level, std::uint32_t first) {
+  void push(unsigned boxes, const float (&distance)[kBlock], int level, std::uint32_t first) {
     if (boxes == 0)
       return;
     const auto put = [&](int k) {
-      entry_[size_++] = {beside[k], level, first + static_cast<std::uint32_t>(k)};
+      entry_[size_++] = {distance[k], level, first + static_cast<std::uint32_t>(k)};
     };
-    const int nearest = nearest_of(boxes, beside);
+    const int nearest = nearest_of(boxes, distance);
     each_bit(boxes & ~(1u << nearest), put);
     put(nearest);
   }
@@ -349,16 +349,16 @@ class NearestSearch {
 
   void search(const GridView& g) {
     BoxStack stack;
-    float beside[kBlock];
+    float distance[kBlock];
     const auto push = [&](int level, std::uint32_t row) {
-      const unsigned near = boxes_near(ball_, g.levels.rows[g.levels.first[level] + row], beside);
-      stack.push(near, beside, level - 1, row * kBlock);
+      const unsigned near = boxes_near(ball_, g.levels.rows[g.levels.first[level] + row], distance);
+      stack.push(near, distance, level - 1, row * kBlock);
     };
     if (g.levels.levels > 0)
       push(g.levels.levels - 1, 0);
     while (!stack.empty()) {
       const BoxStack::Entry box = stack.pop();
-      if (box.beside > ball_.reach)
+      if (box.distance > ball_.reach)
         continue;
       if (box.level >= 0)
         push(box.level, box.index);
@@ -386,14 +386,14 @@ class NearestSearch {
   void look_at_boxes(const Triangle::CellList& list, std::uint32_t first, std::uint32_t end) {
     for (std::uint32_t row = first / kBlock; row * kBlock < end; ++row) {
       const std::uint32_t begin = row * kBlock;
-      float beside[kBlock];
-      unsigned near = boxes_near(ball_, list.boxes[row], beside);
+      float distance[kBlock];
+      unsigned near = boxes_near(ball_, list.boxes[row], distance);
       near &= first > begin ? ~0u << (first - begin) : ~0u;
       near &= end - begin < kBlock ? (1u << (end - begin)) - 1 : ~0u;
       while (near != 0) {
-        const int k = nearest_of(near, beside);
+        const int k = nearest_of(near, distance);
         near &= ~(1u << k);
-        if (beside[k] > ball_.reach)
+        if (distance[k] > ball_.reach)
           break;
         look_at_block(list.blocks[list.first_block[row] + static_cast<std::uint32_t>(k)]);
       }

@@ -39,8 +39,8 @@ template <class Real>
   return select(more > o, select(y < o, o - angle, angle), o);
 }
 
-/// Times the product of the three distances: numbers smaller than that, whose parts are off by 20
-/// u, are computed anew in 106 bits. They are so near an edge alone.
+/// Numbers below kLeastParts * product of the three distances, whose parts are off by 20 u, are
+/// computed anew in 106 bits. They are so small near an edge alone.
 inline constexpr double kLeastParts = 0x1p-8;
 /// The same of a volume in double whose sign is known.
 inline constexpr double kVolumeError = 0x1p-47;

@@ -7,7 +7,7 @@
 namespace grelha {
 namespace {
 
-/// Times the wider radius: least height. A flatter cone is taken to be so high, which moves it by 4
+/// Least height = kFlattest * wider radius. A flatter cone is taken to be so high, which moves it by 4
 /// u of that radius.
 constexpr double kFlattest = 0x1p-22;
 

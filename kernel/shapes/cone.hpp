@@ -99,12 +99,12 @@ namespace grelha::GRELHA_ISA {
 
 // Bounds of floats for lines that surely pass a cone by; docs/numerics.md derives them.
 
-/// Times the square of the wider radius.
+/// Squared radius of the cylinder around a cone = kWider * square of the wider radius.
 inline constexpr float kWider = 1.125f;
-/// Times the square of all that is around a cone: its distance, its size, the error of coordinates
-/// in u.
+/// error <= kPassError * square of the sum of a cone's distance, its size, and the error of
+/// coordinates in u.
 inline constexpr float kPassError = 0x1p-36f;
-/// Times the same: of heights.
+/// The same of heights, by the sum itself.
 inline constexpr float kPassHeight = 0x1p-18f;
 /// Lines nearer to the axis' direction are in a cylinder for longer than floats can tell.
 inline constexpr float kLeastSine = 0x1p-30f;
@@ -162,17 +162,17 @@ template <class Real>
 // T: the distance from the ray's origin to the cone and its size together, with the error of
 // coordinates, in u: points beside the cone are off by 8 u T. G: (1 + slope)^2.
 
-/// Times T R G^2 / dir^2: of the discriminant, R being how far from the narrower end the line
+/// Discriminant: error <= kDiscError * T R G^2 / dir^2, R being how far from the narrower end the line
 /// passes and the radius there together.
 inline constexpr double kDiscError = 128;
-/// Times T R G: of the square of a point's distance to the axis less that of the side there, R
-/// being both distances together.
+/// Square of a point's distance to the axis less that of the side there: error <= kSideError * T R G,
+/// R being both distances together.
 inline constexpr double kSideError = 64;
 /// The same of where a ray starts, T being its distance and the radius.
 inline constexpr double kStartError = 12;
-/// Times T: of heights around a root, beside kRootError.
+/// Heights around a root, besides kRootError: error <= kHeightError * T.
 inline constexpr double kHeightError = 32;
-/// Times T / |dir|: how far beside a root the side is looked for. Doubles afford more.
+/// The side is looked for within kRootError * T / |dir| of a root. Doubles afford more.
 template <class Real>
 inline constexpr double kRootError = std::is_same_v<Scalar<Real>, float> ? 0x1p-14 : 0x1p-37;
 

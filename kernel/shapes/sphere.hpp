@@ -121,8 +121,8 @@ namespace grelha::GRELHA_ISA {
 // Error bounds of floats or doubles, in u; docs/numerics.md derives each, sphere_test.cpp pins
 // them. L: the distances to the centre along the axes together, and the error of coordinates, in u.
 
-/// Times L + r, w: with that of a root (r + w) w bounds the error of the square of half a chord,
-/// and w / |dir| that of its middle.
+/// Chords: with w = kFarError (L + r) and that of a root, (r + w) w bounds the error of the square of
+/// half a chord, and w / |dir| that of its middle.
 inline constexpr double kFarError = 16;
 
 /// The chords that rays' lines have in spheres.
@@ -375,7 +375,7 @@ inline void sphere_positions(const SurfaceHit<Real>& met,
     sphere_positions<Real, i + 1>(met, sphere, to);
 }
 
-/// Times the radius: a start that far off lets no ray hit the bulge whose cosine with the rounded
+/// A start kBulge * radius off the surface lets no ray hit the bulge whose cosine with the rounded
 /// normal has the wrong sign, 64 u^2. It takes 13 u^2.
 inline constexpr float kBulge = 0x1p-42f;
 

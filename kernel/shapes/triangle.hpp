@@ -65,8 +65,8 @@ class TriangleOverlap {
   }
 
  private:
-  /// Times the products whose difference a component of the normal is: their rounding in double,
-  /// for two sides, a product and the difference. For needles it can exceed the result. Other
+  /// A component of the normal in double: error <= kNormalError * sum of its two products, for two
+  /// sides, a product and the difference. For needles it can exceed the result. Other
   /// roundings come to less than a thousandth of the pad, which all cells are grown by.
   static constexpr double kNormalError = 0x1p-51;
 
@@ -160,8 +160,8 @@ struct Triangle {
     const std::uint32_t* first_block = nullptr;  ///< the first of each row of boxes, and the end
 
     /// The block at a position, if blocks have boxes.
-    std::uint32_t block_at(std::uint32_t place) const {
-      return first_block[place / kBlock] + place % kBlock;
+    std::uint32_t block_at(std::uint32_t index) const {
+      return first_block[index / kBlock] + index % kBlock;
     }
     /// A cell's blocks: the first, and the one behind the last.
     std::pair<std::uint32_t, std::uint32_t> blocks_of(std::size_t cell) const {
@@ -269,11 +269,11 @@ inline Vec3<Real> permute_axes(const Real& axis, const Vec3<Real>& v) {
 // of one. "Spread" is S (S + Z) over the sum of the edge functions, times the range of the corners'
 // t.
 
-/// Times S (S + Z): bound of an edge function's error. It is 24 u: a sheared corner is off by u (4
+/// Edge function: error <= kEdgeError * S (S + Z). It is 24 u: a sheared corner is off by u (4
 /// (S + Z) + S).
 inline constexpr double kEdgeError = 32;
-/// Times the spread: with kDepthRounding times t, bound of the error of t. It is 72 u by the edges,
-/// a quarter of whose sum may be wrong, and 36 u by the mean.
+/// t: error <= kDepthError * spread + kDepthRounding * t. It is 72 u by the edges, a quarter of whose
+/// sum may be wrong, and 36 u by the mean.
 inline constexpr double kDepthError = 256;
 inline constexpr double kDepthRounding = 16;
 /// Added to the range: more than underflow takes from the corners' t and their weighted sum.
@@ -600,11 +600,11 @@ inline Surface<Real> surface_on(const Triangle::Arrays& triangles,
   const TriangleVertices<Real> c = {three_at(triangles.vertex, v[0]),
                                     three_at(triangles.vertex, v[1]),
                                     three_at(triangles.vertex, v[2])};
-  PositionParts<Real> place;
-  triangle_positions<Real>(shear_axes(met.dir), met.org, met.dir, c, place);
-  const Vec3<Real> point = place.vector(0);
-  const Vec3<Real> n = place.vector(3);
-  const Vec3<Real> weights = place.vector(6);
+  PositionParts<Real> parts;
+  triangle_positions<Real>(shear_axes(met.dir), met.org, met.dir, c, parts);
+  const Vec3<Real> point = parts.vector(0);
+  const Vec3<Real> n = parts.vector(3);
+  const Vec3<Real> weights = parts.vector(6);
   const Real max_coordinate = max(max(largest(c.a), largest(c.b)), largest(c.c));
   Surface<Real> s{
       .point = point,

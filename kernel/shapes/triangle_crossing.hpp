@@ -100,7 +100,7 @@ inline TriangleVertices<Wide<Real>> to_double(const TriangleVertices<Real>& c) {
   return {to_double<i>(c.a), to_double<i>(c.b), to_double<i>(c.c)};
 }
 
-/// Times the product of sizes: bound of the error of a normal times a vector, 16 u. It is 9 u, as
+/// A normal times a vector: error <= kProductError * product of sizes, 16 u. It is 9 u, as
 /// docs/numerics.md derives. Below kLeastProduct floats may have underflowed.
 inline constexpr float kProductError = 0x1p-20f;
 inline constexpr float kLeastProduct = 0x1p-100f;

@@ -328,8 +328,8 @@ class PairTests {
   /// A ray as the filter sees it: in the order of its axes.
   struct ShearedRay {
     float org[3], shear[2];
-    float error;             ///< of an edge function, over the largest sheared coordinate
-    std::uint32_t place[3];  ///< of coordinates in a block
+    float error;            ///< of an edge function, over the largest sheared coordinate
+    std::uint32_t axis[3];  ///< of coordinates in a block, the longest last
   };
 
   /// S + Z of bound_triangle() is at most three times the farthest distance along an axis, and S
@@ -350,7 +350,7 @@ class PairTests {
       const int axis[3] = {kNextAxis[k], kPreviousAxis[k], k};
       for (int a = 0; a < 3; ++a) {
         to.org[a] = p_.org[axis[a]][r];
-        to.place[a] = static_cast<std::uint32_t>(axis[a]);
+        to.axis[a] = static_cast<std::uint32_t>(axis[a]);
       }
       to.shear[0] = p_.shear[0][r];
       to.shear[1] = p_.shear[1][r];
@@ -364,9 +364,9 @@ class PairTests {
                                                  int i) {
     const auto sheared = [&](const float(&v)[3][kBlock], Block& x, Block& y)
         __attribute__((always_inline)) {
-      const Block z = Block(r.org[2]) - load<Block>(v[r.place[2]] + i);
-      x = (Block(r.org[0]) - load<Block>(v[r.place[0]] + i)) - Block(r.shear[0]) * z;
-      y = (Block(r.org[1]) - load<Block>(v[r.place[1]] + i)) - Block(r.shear[1]) * z;
+      const Block z = Block(r.org[2]) - load<Block>(v[r.axis[2]] + i);
+      x = (Block(r.org[0]) - load<Block>(v[r.axis[0]] + i)) - Block(r.shear[0]) * z;
+      y = (Block(r.org[1]) - load<Block>(v[r.axis[1]] + i)) - Block(r.shear[1]) * z;
     };
     Block ax, ay, bx, by, cx, cy;
     sheared(block.a, ax, ay);

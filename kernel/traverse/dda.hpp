@@ -27,18 +27,18 @@ inline const std::uint8_t* distances_in(const GridView& g, unsigned octant) {
 /// Rays in the units of one grid's cells.
 template <class Real>
 struct DdaState {
-  Real place[3];    ///< position at t = 0
-  Real speed[3];    ///< cells per unit of t
-  Real inverse[3];  ///< of the speed
-  Real end;         ///< t where they leave the grid or their search
+  Real origin_in_cells[3];  ///< position at t = 0
+  Real speed[3];            ///< cells per unit of t
+  Real inverse[3];          ///< of the speed
+  Real end;                 ///< t where they leave the grid or their search
 
   /// t at which they cross a plane across an axis, in cells.
   [[gnu::always_inline]] Real t_at(int axis, const Real& plane) const {
-    return (plane - place[axis]) * inverse[axis];
+    return (plane - origin_in_cells[axis]) * inverse[axis];
   }
   /// The cell along an axis at t, of n.
   [[gnu::always_inline]] Real cell_at(int axis, const Real& t, int n) const {
-    return clamp_cells(place[axis] + t * speed[axis], n);
+    return clamp_cells(origin_in_cells[axis] + t * speed[axis], n);
   }
 };
 
@@ -48,7 +48,7 @@ template <class Real>
     const GridView& g, const Real (&org)[3], const Real (&dir)[3], int a, DdaState<Real>& c) {
   const Real least = min_advance(dir[0], dir[1], dir[2]);
   const Real cells(g.inv_cell_f[a]);
-  c.place[a] = (org[a] - Real(g.lo_f[a])) * cells;
+  c.origin_in_cells[a] = (org[a] - Real(g.lo_f[a])) * cells;
   c.speed[a] = with_advance(dir[a], least) * cells;
   c.inverse[a] = Real(1) / c.speed[a];
 }
@@ -60,7 +60,7 @@ inline DdaState<double> to_grid(const GridView& g, const Number (&org)[3], const
   // less than what a float can be beside another: on its way from afar a ray strays by as much
   const double least = 1e-80 * static_cast<double>(max_abs(max_abs(dir[0], dir[1]), dir[2]));
   for (int a = 0; a < 3; ++a) {
-    c.place[a] = (static_cast<double>(org[a]) - g.lo[a]) * g.inv_cell[a];
+    c.origin_in_cells[a] = (static_cast<double>(org[a]) - g.lo[a]) * g.inv_cell[a];
     c.speed[a] = with_advance(static_cast<double>(dir[a]), least) * g.inv_cell[a];
     c.inverse[a] = 1 / c.speed[a];
   }
@@ -70,7 +70,7 @@ inline DdaState<double> to_grid(const GridView& g, const Number (&org)[3], const
 /// The part of [t0, t1] inside the box of all cells; empty when t0 > t1.
 inline void clip_to_grid(const GridView& g, const DdaState<double>& c, double& t0, double& t1) {
   for (int a = 0; a < 3; ++a)
-    clip_to_slab(0., double(g.n[a]), c.place[a], c.inverse[a], t0, t1);
+    clip_to_slab(0., double(g.n[a]), c.origin_in_cells[a], c.inverse[a], t0, t1);
 }
 
 /// The cells that rays from t = begin to t = best start in. Returns those that come to the grid.
@@ -87,7 +87,8 @@ template <class Real>
   const Mask<Real> search = best > begin;
   for (int a = 0; a < 3; ++a) {
     set_dda(g, org, dir, a, c);
-    clip_to_slab(Real(0), Real(static_cast<float>(g.n[a])), c.place[a], c.inverse[a], t0, t1);
+    clip_to_slab(
+        Real(0), Real(static_cast<float>(g.n[a])), c.origin_in_cells[a], c.inverse[a], t0, t1);
   }
   for (int a = 0; a < 3; ++a)
     cell[a] = c.cell_at(a, t0, g.n[a]);
@@ -160,8 +161,8 @@ class CellDda {
       return false;
     const FourInts up = inverse_ > four(0);
     up_ = masked(up, four(1));
-    way_ = (up_ + up_) - four(1);
-    edge_ = masked(up, last_);
+    step_ = (up_ + up_) - four(1);
+    last_cell_ = masked(up, last_);
     signed_strides_ = up ? strides_ : FourInts{} - strides_;
     distance_ = distances_in(g_, bits(inverse_ < four(0)));
     go_to(cell_at(four(begin)));
@@ -171,25 +172,25 @@ class CellDda {
   /// Goes on to the next cell. False: there is none before t = best.
   [[gnu::always_inline]] bool step(float best) {
     const FourInts axis = first_axis(exit_);
-    if (!any(axis & (at_ != edge_) & goes_on(exit_, best)))
+    if (!any(axis & (at_ != last_cell_) & goes_on(exit_, best)))
       return false;
-    at_ = at_ + masked(axis, way_);
+    at_ = at_ + masked(axis, step_);
     cell_ += sum(signed_strides_ & axis);
-    exit_ = axis ? ahead_ : exit_;
-    ahead_ = far_side(at_ + way_);
+    exit_ = axis ? exit_after_ : exit_;
+    exit_after_ = far_side(at_ + step_);
     return true;
   }
 
   /// The same over cells that are empty, as are those within `by` of this one on its way.
   [[gnu::always_inline]] bool leap(int by, float best) {
     const Four far = four(static_cast<float>(by));
-    const Four exit = far_side(at_ + way_ * far);
+    const Four exit = far_side(at_ + step_ * far);
     const FourInts axis = first_axis(exit);
-    if (!any(axis & ((edge_ - at_) * way_ > far) & goes_on(exit, best)))
+    if (!any(axis & ((last_cell_ - at_) * step_ > far) & goes_on(exit, best)))
       return false;
     const FourInts at = to_ints(at_);
-    const FourInts last = at + to_ints(way_) * by;
-    const FourInts next = last + to_ints(way_);
+    const FourInts last = at + to_ints(step_) * by;
+    const FourInts next = last + to_ints(step_);
     const FourInts side = cell_at(of_axis(axis, exit));
     go_to(axis ? next : min(max(side, min(at, last)), max(at, last)));
     return true;
@@ -217,12 +218,12 @@ class CellDda {
   float first_t(float t_min) const {
     Four t = min(first_planes(), last_planes());
     t[3] = t_min;
-    return most(max(t, four(t_min)));
+    return reduce_max(max(t, four(t_min)));
   }
   float last_t(float best) const {
     Four t = max(first_planes(), last_planes());
     t[3] = best;
-    return least(min(t, four(best)));
+    return reduce_min(min(t, four(best)));
   }
 
   /// Mask of the plane that is crossed next; of several at once, the plane of the first axis. Empty
@@ -251,7 +252,7 @@ class CellDda {
     cell_ = sum(at * strides_);
     at_ = to_floats(at);
     exit_ = far_side(at_);
-    ahead_ = far_side(at_ + way_);
+    exit_after_ = far_side(at_ + step_);
   }
 
   const GridView& g_;
@@ -259,11 +260,11 @@ class CellDda {
   float end_;                     ///< the same
   Four last_;                     ///< the last cell of all
   Four up_;                       ///< 1 along axes on which the ray goes up, else 0
-  Four way_;                      ///< 1 or -1
-  Four edge_;                     ///< the last cell along its way
+  Four step_;                     ///< 1 or -1
+  Four last_cell_;                ///< the last cell along its way
   Four at_;                       ///< the cell it is in
   Four exit_;                     ///< t of the plane that it crosses next on each axis
-  Four ahead_;                    ///< the same of the plane after that
+  Four exit_after_;               ///< the same of the plane after that
   FourInts strides_, signed_strides_;
   const std::uint8_t* distance_;  ///< of cells, for its octant
   int cell_;

@@ -109,7 +109,7 @@ class FrustumBuilder {
  public:
   FrustumBuilder(const GridView& g, const Packet& p, Frustum& f) : g_(g), p_(p), f_(f) {}
 
-  Coherence around() {
+  Coherence build() {
     const int first = clip_rays();
     if (first < 0)
       return Coherence::kMisses;
@@ -174,14 +174,14 @@ class FrustumBuilder {
     VFloat s0(kInfinity);
     VFloat s1(-kInfinity);
     VFloat far(0);
-    bool apart = false;
+    bool incoherent = false;
     for (int i = 0; i < kGroupRow; ++i)
       f_.group_near[i] = kInfinity;
     each_live_group(p_, [&](int i, int group) {
       const VFloat leave = load<VFloat>(f_.leave + i);
       const Mask<VFloat> meets = leave > VFloat(-kInfinity);
       const VFloat dk = load<VFloat>(p_.dir[k] + i) * VFloat(sign);
-      apart |= any(and_not(meets, advances(i, dk)));
+      incoherent |= any(and_not(meets, advances(i, dk)));
       VFloat at = (load<VFloat>(p_.org[k] + i) - VFloat(g_.lo_f[k])) * VFloat(g_.inv_cell_f[k]);
       if (f_.flip)
         at = VFloat(size_) - at;
@@ -194,7 +194,7 @@ class FrustumBuilder {
       s1 = max(select(meets, at + leave * q, VFloat(-kInfinity)), s1);
       far = max_abs(select(meets, at, VFloat(0)), far);
     });
-    if (apart)
+    if (incoherent)
       return false;
     set_extent(lane_min(s0), lane_max(s1));
     farthest_ = lane_max(far);
@@ -215,8 +215,8 @@ class FrustumBuilder {
     if (!(f_.from <= f_.to))
       f_.to = f_.from;
     const float stay = f_.to - f_.from;
-    thin_ = stay < kThinStay;
-    per_ = thin_ ? 0.f : 1.f / stay;
+    is_degenerate_ = stay < kThinStay;
+    inverse_extent_ = is_degenerate_ ? 0.f : 1.f / stay;
   }
 
   /// Bounds the rays along the other axes, on the first slice and on the last.
@@ -276,19 +276,19 @@ class FrustumBuilder {
     const auto bit = [](bool down, int axis) { return down ? 1u << axis : 0u; };
     const unsigned octant =
         bit(f_.flip, f_.k) | bit(taken.down[f_.u] != 0, f_.u) | bit(taken.down[f_.v] != 0, f_.v);
-    const bool apart = taken.both_ways(f_.u) || taken.both_ways(f_.v);
-    f_.distance = apart ? g_.distance : distances_in(g_, octant);
+    const bool incoherent = taken.both_ways(f_.u) || taken.both_ways(f_.v);
+    f_.distance = incoherent ? g_.distance : distances_in(g_, octant);
   }
 
   [[gnu::always_inline]] void set_side(int j, float lo0, float lo1, float hi0, float hi1) {
-    if (thin_) {
+    if (is_degenerate_) {
       lo0 = lo1 = min(lo0, lo1);
       hi0 = hi1 = max(hi0, hi1);
     }
     f_.lo[j] = lo0;
-    f_.lo_slope[j] = (lo1 - lo0) * per_;
+    f_.lo_slope[j] = (lo1 - lo0) * inverse_extent_;
     f_.hi[j] = hi0;
-    f_.hi_slope[j] = (hi1 - hi0) * per_;
+    f_.hi_slope[j] = (hi1 - hi0) * inverse_extent_;
   }
 
   /// The error of everything above is a few roundings of numbers no larger than the farthest
@@ -374,12 +374,12 @@ class FrustumBuilder {
     VFloat hi0 = load<VFloat>(hi[0] + i);
     VFloat hi1 = load<VFloat>(hi[1] + i);
     const Mask<VFloat> some = lo0 <= hi0;
-    if (per_ == 0) {
+    if (inverse_extent_ == 0) {
       lo0 = lo1 = min(lo0, lo1);
       hi0 = hi1 = max(hi0, hi1);
     }
-    const VFloat lo_slope = select(some, (lo1 - lo0) * VFloat(per_), o);
-    const VFloat hi_slope = select(some, (hi1 - hi0) * VFloat(per_), o);
+    const VFloat lo_slope = select(some, (lo1 - lo0) * VFloat(inverse_extent_), o);
+    const VFloat hi_slope = select(some, (hi1 - hi0) * VFloat(inverse_extent_), o);
     const VFloat steepest = max(max_abs(lo_slope, hi_slope), VFloat(1));
     const VFloat cull = VFloat(cull_) + VFloat(cull_of_slope_) * steepest;
     const float zero = corner_of(j == 0 ? f_.u : f_.v) * f_.a[2 * j];
@@ -413,8 +413,8 @@ class FrustumBuilder {
   GroupBounds groups_;
   float size_;            ///< slices of the grid
   float first_, last_;    ///< slice that the rays come to the grid in, and leave it from
-  bool thin_;             ///< the stay has no slopes
-  float per_;             ///< 1 / stay, or 0
+  bool is_degenerate_;    ///< the stay has no slopes
+  float inverse_extent_;  ///< 1 / stay, or 0
   float farthest_;        ///< from the grid's corner, of origins and of the grid, in cells
   float slope_;           ///< steepest of the rays, at least 1
   float plane_rounding_;  ///< of planes, in cells, by their slopes
@@ -427,7 +427,7 @@ class FrustumBuilder {
 /// Computes entry and exit of every ray, then the frustum around the rays that hit the grid, along
 /// the axis on which the first such ray crosses most cells.
 inline Coherence bound_rays(const GridView& g, const Packet& p, Frustum& f) {
-  return FrustumBuilder(g, p, f).around();
+  return FrustumBuilder(g, p, f).build();
 }
 
 }  // namespace grelha::GRELHA_ISA

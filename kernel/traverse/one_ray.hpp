@@ -165,12 +165,12 @@ inline float t_of(const Single& r, const ExactRay& ray, const CrossingSpan& know
   const GeometryView& g = *r.geometry;
   const std::uint32_t id = id_of(*r.id);
   if (r.block && g.ids.has(PrimitiveKind::kTriangle, id)) {
-    int place = 0;
+    int lane = 0;
     for (int k = 1; k < kBlock; ++k)
-      place = r.block->id[k] == id ? k : place;
-    const Triangle::Fields<float> met = triangle_of(*r.block, place);
+      lane = r.block->id[k] == id ? k : lane;
+    const Triangle::Fields<float> met = triangle_of(*r.block, lane);
     float t;
-    if (r.block->id[place] == id && round_plane_t(ray, met.corner, t))
+    if (r.block->id[lane] == id && round_plane_t(ray, met.corner, t))
       return t;
   }
   return rounded_t(g, ray, id, known);

@@ -445,21 +445,21 @@ inline void traverse_packet(
     const GridView& g, Packet& p, int width, bool use_mailbox, TraceCounts& n) {
   const std::uint64_t live = p.live;
   int rays = width == 1 || g.stretched ? 0 : width < p.size ? width : p.size;
-  std::uint64_t apart = live;
-  for (; rays > 0 && apart != 0; rays = parts_of(rays)) {
-    const std::uint64_t going = apart;
+  std::uint64_t unfinished = live;
+  for (; rays > 0 && unfinished != 0; rays = parts_of(rays)) {
+    const std::uint64_t going = unfinished;
     const int each = (rays + kWidth<VFloat> - 1) / kWidth<VFloat>;
-    apart = 0;
+    unfinished = 0;
     for (int first = 0; first < p.groups; first += each) {
       p.live = going & ~std::uint64_t{0} >> (64 - each) << first;
       if (p.live != 0 && !walk_together<kAny>(g, p, rays, use_mailbox, n)) {
-        apart |= p.live;
+        unfinished |= p.live;
         ++n.packets.packet_fallbacks;
       }
     }
   }
-  p.live = apart;
-  if (apart != 0)
+  p.live = unfinished;
+  if (unfinished != 0)
     stream_traverse<kAny ? Find::kAny : Find::kClosest>(g, p, n);
   p.live = live;
 }

@@ -88,7 +88,7 @@ class ActiveRays {
                                   const Words<VFloat>& ray,
                                   const Words<VFloat>& field) {
     for (int a = 0; a < 3; ++a) {
-      selected.store(place_[a] + to, c.place[a]);
+      selected.store(origin_in_cells_[a] + to, c.origin_in_cells[a]);
       selected.store(speed_[a] + to, c.speed[a]);
       selected.store(inverse_[a] + to, c.inverse[a]);
       selected.store(cell_[a] + to, cell[a]);
@@ -122,7 +122,7 @@ class ActiveRays {
   [[gnu::always_inline]] DdaState<VFloat> state(int i) const {
     DdaState<VFloat> c;
     for (int a = 0; a < 3; ++a) {
-      c.place[a] = load<VFloat>(place_[a] + i);
+      c.origin_in_cells[a] = load<VFloat>(origin_in_cells_[a] + i);
       c.speed[a] = load<VFloat>(speed_[a] + i);
       c.inverse[a] = load<VFloat>(inverse_[a] + i);
     }
@@ -175,7 +175,7 @@ class ActiveRays {
   const Packet& p_;
   int count_ = 0;
   int going_ = 0;
-  alignas(64) float place_[3][kActiveRow];
+  alignas(64) float origin_in_cells_[3][kActiveRow];
   alignas(64) float speed_[3][kActiveRow];
   alignas(64) float inverse_[3][kActiveRow];
   alignas(64) float cell_[3][kActiveRow];

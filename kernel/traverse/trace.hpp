@@ -53,7 +53,7 @@ inline bool enter_far(const GridView& g, const RayGroup<K>& rays, int i, Entry& 
   return true;
 }
 
-/// Times t: bound of the error of entries and exits in float, which is 3 u.
+/// Entries and exits in float: error <= kEntryError * t, which is 3 u.
 inline constexpr float kEntryError = 0x1p-20f;
 
 /// Start of a search from `shift` on: unlimited if t_min comes before the shift, else 0.

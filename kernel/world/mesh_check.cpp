@@ -163,17 +163,20 @@ class MeshChecker {
   std::uint32_t vertex(std::size_t i, std::uint32_t k) const {
     return (k == 0 ? t_.a : k == 1 ? t_.b : t_.c)[i];
   }
-  std::uint32_t place(std::size_t i, std::uint32_t k) const { return positions_.of(vertex(i, k)); }
+  std::uint32_t position_of(std::size_t i, std::uint32_t k) const {
+    return positions_.of(vertex(i, k));
+  }
   bool has_three_positions(std::size_t i) const {
-    return place(i, 0) != place(i, 1) && place(i, 1) != place(i, 2) && place(i, 2) != place(i, 0);
+    return position_of(i, 0) != position_of(i, 1) && position_of(i, 1) != position_of(i, 2) &&
+           position_of(i, 2) != position_of(i, 0);
   }
 
   void check_triangles() {
     std::vector<CornerSet> items;
     items.reserve(found_.triangles);
     for (const std::uint32_t i : checked_) {
-      CornerSet& item =
-          items.emplace_back(CornerSet{{place(i, 0), place(i, 1), place(i, 2)}, i, 0});
+      CornerSet& item = items.emplace_back(
+          CornerSet{{position_of(i, 0), position_of(i, 1), position_of(i, 2)}, i, 0});
       std::sort(item.vertex, item.vertex + 3);
       float corner[3][3];
       for (std::uint32_t k = 0; k < 3; ++k) {
@@ -195,7 +198,7 @@ class MeshChecker {
     items.reserve(3 * found_.triangles);
     for (const std::uint32_t i : checked_)
       for (std::uint32_t k = 0; has_three_positions(i) && k < 3; ++k) {
-        const auto [low, high] = std::minmax({place(i, k), place(i, (k + 1) % 3)});
+        const auto [low, high] = std::minmax({position_of(i, k), position_of(i, (k + 1) % 3)});
         items.push_back({{low, high, 0}, i, k});
       }
     each_same(items, t_.vertex_count(), [&](std::span<const CornerSet> same) { check_edge(same); });
@@ -207,7 +210,7 @@ class MeshChecker {
                         vertex(first.triangle, (first.side + 1) % 3)};
     const auto up = static_cast<std::size_t>(
         std::count_if(same.begin(), same.end(), [&](const CornerSet& item) {
-          return place(item.triangle, item.side) == item.vertex[0];
+          return position_of(item.triangle, item.side) == item.vertex[0];
         }));
     ++found_.edges;
     if (same.size() % 2 != 0)

@@ -122,7 +122,7 @@ World::Impl::Impl(const SceneSpans& s,
     if (const BuildMemory need = memory_of(scene, primitives, plan); need.peak > options.most_bytes)
       throw TooLarge(need);
   fill(plan, threads_of(options), progress, before, ids_of(moved));
-  outside = build_list(primitives, plan.apart);
+  outside = build_list(primitives, plan.ungridded);
   progress.finish();
   progress.throw_if_cancelled();
   view_primitives();

@@ -115,10 +115,10 @@ bool walk_grid(WalkedRay& r, const GridView& g, RayMailbox* box, TraceCounts& n)
   int step[3];
   double next[3];
   const auto plane = [&](int a) {
-    return (at[a] + (step[a] > 0 ? 1 : 0) - ray.place[a]) * ray.inverse[a];
+    return (at[a] + (step[a] > 0 ? 1 : 0) - ray.origin_in_cells[a]) * ray.inverse[a];
   };
   for (int a = 0; a < 3; ++a) {
-    at[a] = clamp_cell(ray.place[a] + t0 * ray.speed[a], g.n[a]);
+    at[a] = clamp_cell(ray.origin_in_cells[a] + t0 * ray.speed[a], g.n[a]);
     step[a] = ray.speed[a] > 0 ? 1 : -1;
     next[a] = plane(a);
   }
