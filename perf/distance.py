@@ -4,27 +4,38 @@ prints its tables and draws a chart of time against distance.
 
     ./run perf distance [--keep] [--draw] [--scene NAME] [--points N] [--rounds N]
 
---keep writes the tables into docs/performance.md and the chart into docs/images.
---draw measures nothing: it draws the chart again from the tables that are kept.
+--keep writes docs/distance.csv, docs/insides.csv and the chart; perf/figures.py makes the table of
+docs/performance.md. --draw measures nothing: it draws the chart again from the CSV.
 """
+import csv
 import pathlib
-import re
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
-from bench import DOCS, ROOT, table_bench
+from bench import DOCS, ROOT, read_csv, record, table_bench
 from chart import draw
 
 PLACES = ("in the surface", ".01 sizes", "1 size", "10 sizes", "1e4 sizes", "the middle")
 LOOKS = {"array": 5, "call": 6, "Embree": 2, "CGAL": 3}
 
 
-def rows_of(text):
-    """Rows of the table of closest points, as dicts by its header."""
-    lines = [line for line in text.splitlines() if line.startswith("|")]
-    cells = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
-    names = next((row for row in cells if row[2:4] == ["array", "call"]), [])
-    return [dict(zip(names, row)) for row in cells if len(row) == len(names) and row[1] in PLACES]
+def tables_of(text):
+    """Tables of Markdown as lists of rows of words, with their headers."""
+    found = []
+    for block in text.split("\n\n"):
+        lines = [line for line in block.splitlines() if line.startswith("|")]
+        rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
+        if rows:
+            found.append([rows[0], *rows[2:]])
+    return found
+
+
+def keep(tables, folder):
+    for name, rows in zip(("distance", "insides"), tables):
+        with open(folder / f"{name}.csv", "w", newline="") as f:
+            csv.writer(f, lineterminator="\n").writerows(rows)
+        if folder == DOCS:
+            record(name)
 
 
 def panel_of(scene, rows):
@@ -42,8 +53,8 @@ def panel_of(scene, rows):
             "y": {"label": "microseconds a point", "log": True}}
 
 
-def draw_chart(text, folder):
-    rows = rows_of(text)
+def draw_chart(rows, folder):
+    rows = [row for row in rows if row["points"] in PLACES]
     scenes = list(dict.fromkeys(row["scene"] for row in rows))
     draw({"name": "distance", "title": "Time of a closest point, by the distance from the mesh",
           "columns": 2, "panels": [panel_of(scene, [row for row in rows if row["scene"] == scene])
@@ -52,10 +63,8 @@ def draw_chart(text, folder):
 
 
 if __name__ == "__main__":
-    if "--draw" in sys.argv:
-        page = (DOCS / "performance.md").read_text()
-        draw_chart(re.search("<!-- made by perf/distance.py -->.*<!-- end of distance -->", page,
-                             re.S)[0], DOCS / "images")
-    else:
-        draw_chart(table_bench(__doc__, "distance"),
-                   DOCS / "images" if "--keep" in sys.argv else ROOT / "build")
+    KEPT = "--keep" in sys.argv or "--draw" in sys.argv
+    FOLDER = DOCS if KEPT else ROOT / "build"
+    if "--draw" not in sys.argv:
+        keep(tables_of(table_bench(__doc__, "distance", has_section=False)), FOLDER)
+    draw_chart(read_csv("distance", FOLDER), DOCS / "images" if KEPT else FOLDER)

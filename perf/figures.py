@@ -80,6 +80,11 @@ def figures():
             "targets": doc_tables.targets(povray_ratios(), profile),
             "ladder": doc_tables.ladder(rows_of("ladder")),
             "build": doc_tables.build(rows_of("build")),
+            "trace": doc_tables.trace(rows_of("trace")),
+            "distance": doc_tables.distance(rows_of("distance")),
+            "distances": doc_tables.distances(rows_of("distance")),
+            "builds": span([float(r["grelha_1_least_ms"]) / float(r["embree_medium_1_least_ms"])
+                            for r in rows_of("build")]),
             "embree": span([1 / r for r in ratios("ratio")]), "calls": span(calls),
             "calls in the mean": mean(calls), "streams": span(ratios("ratio")),
             "streams in the mean": mean(ratios("ratio"))}

@@ -189,14 +189,10 @@ def tell_profile(phases, alone):
                                           for n in phases)],
             ["one thread / two", *(f"{alone[n]['render'] / alone[n]['render two threads']:.2f}"
                                    for n in phases)]]
-    return f"""## Whole pictures
+    return f"""![where the time of a picture goes](images/frame.svg)
 
-![where the time of a picture goes](images/frame.svg)
-
-Plain pictures of {SIDE} x {SIDE}, paths of at most {DEPTH} rays, one thread of a virtual
-{cpu_name()}, {date.today():%B %Y}. Bars are the fastest of several runs,
-by the phases of `--stats` ([numbers](frame-profile.csv)); lines reach to the slowest.
-`Its rays alone` are the same rays, recorded from the render and traced again in one process.
+Plain pictures of {SIDE} x {SIDE}, paths of at most {DEPTH} rays, one thread
+([numbers](frame-profile.csv)). `Its rays alone` were recorded from the render and traced again.
 
 {table(["", *phases], rows)}
 """
@@ -227,22 +223,13 @@ def tell_povray(bench, results):
 
 
 def povray_section(names, rows):
-    return f"""### Beside POV-Ray
-
-POV-Ray's CPU seconds of rendering over Grelha's, one thread of the same machine,
-{date.today():%B %Y}. Both programs take turns on the same geometry, lights, mirrors, depth
-({DEPTH}) and size. Seconds, those of {cores()} threads, samples a pixel and the RMSE between the
-pictures are in [numbers](frame-povray.csv).
+    return f"""POV-Ray's CPU seconds of rendering over Grelha's, one thread
+([numbers](frame-povray.csv)):
 
 {table(["", *names], rows)}
 
-- POV-Ray 3.7 is Debian's, with its BSP tree (`+BM2`), as fast as its default or faster.
-- Anti-aliased: `+A0.3 +R3` by method 1 (9 samples where neighbours differ) and 2 (recursive).
-  Grelha takes `--aa adaptive:0.2,2` and `0.3,3`, settings that spend about as many samples.
-- Area light: 16 shadow rays a point and light (no `adaptive`). Lens: 32 rays a pixel
-  (`variance 0`).
-
-`./run perf frame --keep` makes these tables, the chart and the numbers.
+POV-Ray is Debian's, with its BSP tree (`+BM2`). Anti-aliased: `+A0.3 +R3` by methods 1 and 2 beside
+`--aa adaptive:0.2,2` and `0.3,3`, which spend about as many samples.
 """
 
 

@@ -4,7 +4,7 @@ table.
 
     ./run perf lists [--keep] [--size N] [--rounds N] [--scene NAME]
 
---keep writes the table into docs/performance.md.
+--keep writes the table into docs/performance.md, without times.
 """
 import pathlib
 import sys
@@ -13,4 +13,4 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
 from bench import table_bench
 
 if __name__ == "__main__":
-    table_bench(__doc__, "lists")
+    table_bench(__doc__, "lists", columns=(0, 2, 11, 12, 13))

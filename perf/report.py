@@ -89,23 +89,17 @@ def tell(results):
                     "–" if column is None else gain(theirs[column], theirs[1])]
         rows.append(row)
     header = [words for name, *_ in results for words in (name, "the report")]
-    return f"""## The report's table
-
-Four scenes of the student report of 2019 at 512 x 512, paths of at most 6 rays. Ours are measured
-on a virtual {cpu_name()} with {cores()} threads, {date.today():%B %Y}; the report's are
-its own, of an i7-8750H with twelve threads. The machines differ, so the table has gains over the
-row `grid` of the same column. [report.csv](report.csv) and the chart have seconds.
+    return f"""Four scenes of the student report of 2019 at 512 x 512, paths of at most 6 rays:
+gains over the row `grid` of the same column, ours with {cores()} threads, the report's with twelve
+of an i7-8750H ([seconds](report.csv)).
 
 {table(["", *header], rows)}
 
 The rows down to `grid, threads` trace the report's way: one ray, one primitive, one cell at a time,
-on a grid of M = 2. A picture's recorded rays are traced again each way, and the time of shading in
-a whole render is added. `packets` are whole renders. `no grid` is extrapolated from every so
-many-th ray (`every_nth_ray`). Distant has three balls and a plane, so the kernel builds no grid.
+on a grid of M = 2. `packets` are whole renders. Distant has three balls and a plane, so the kernel
+builds no grid.
 
 ![seconds of each step, ours and the report's](images/report.svg)
-
-`./run perf report --keep` makes table, chart and numbers.
 """
 
 

@@ -5,32 +5,26 @@
                      --size N, --rounds N, --scenes DIR, ...]
 
 The benchmark prints the tables. A whole run (--rounds may be given) writes docs/trace.csv,
-docs/images/trace.svg and the table of docs/performance.md; any other the first two beside the
-program. The benchmark's own JSON stays there in either case. --draw: the chart alone, from
-docs/trace.csv.
+docs/images/trace.svg; any other writes these beside the program. perf/figures.py makes the table of
+docs/performance.md. --draw: the chart alone, from docs/trace.csv.
 """
 import argparse
 import csv
 import json
-import math
 import pathlib
-import re
-import statistics
 import subprocess
 import sys
-from datetime import date
 
 from matplotlib.lines import Line2D
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
-from bench import DRAW_HELP, ROOT, commit, cpu_name, plt, read_csv, record, table
+from bench import DRAW_HELP, ROOT, plt, read_csv, record
 from chart import legend_below
 
 FIRST = [
     "rays", "hits", "disagree", "ns/ray", "tests/ray", "cells/ray", "lanes busy", "fell back",
     "ratio", "ratio of the best", "ratio to fast", "ratio of calls", "ratio of streams of 8",
     "ratio by default"]
-CALLER = ["ratio of calls", "ratio of streams of 8", "ratio by default"]
 # Label, then marker and colours (after Okabe and Ito)
 FASTER = ("as a render traces them: faster than Embree", {"marker": "o", "color": "#0072B2"})
 SLOWER = ("as a render traces them: slower than Embree", {"marker": "s", "color": "#D55E00"})
@@ -68,44 +62,6 @@ def write_csv(cells, path):
             table.writerow([
                 scene, kind, *("" if k not in c else int(c[k]) if k == "rays" else f"{c[k]:.4g}"
                                for k in FIRST + ways)])
-
-
-def bold(value):
-    return f"**{value:.2f}**" if value > 1 else f"{value:.2f}"
-
-
-def in_words(values, what):
-    """How many of some ratios are below 1, their geometric mean and the worst."""
-    mean = math.exp(statistics.fmean(map(math.log, values)))
-    return (f"{what}: {sum(v < 1 for v in values)} of {len(values)} below 1, "
-            f"{mean:.2f} in the geometric mean, {max(values):.2f} at worst")
-
-
-def ratios(cells, embree):
-    """Markdown: a ratio a cell, in bold where Embree is faster. `embree`: its name."""
-    kinds = list(dict.fromkeys(k for _, k in cells))
-
-    def ratio(c):
-        return bold(c["ratio"])
-
-    def caller(c):
-        return "; ".join(bold(c[k]) for k in CALLER)
-
-    told = [in_words([c["ratio"] for c in cells.values()], "Rays as a render traces them")]
-    told += [in_words([c[k] for c in cells.values()], words) for k, words in zip(CALLER, (
-        "Calls of one ray", "Streams of 8", "One stream by default"))]
-
-    def rows(text):
-        scenes = dict.fromkeys(scene for scene, _ in cells)
-        return [[scene, *(text(cells[scene, k]) if (scene, k) in cells else "" for k in kinds)]
-                for scene in scenes]
-
-    return (f"One thread of a virtual {cpu_name()}, {embree}, {date.today():%B %Y}, "
-            f"{commit()}:\n\n" + table(["", *kinds], rows(ratio)) + "\n\n" + ". ".join(told) +
-            ".\n\nAs a caller of the library asks, with no options. One ray a call over "
-            "`rtcIntersect1`. Streams of eight over `rtcIntersect8`, "
-            "by the better of its hints. One stream of all over Embree's best mode:\n\n" +
-            table(["", *kinds], rows(caller)) + "\n")
 
 
 def cells_from_csv():
@@ -195,14 +151,6 @@ def main():
         picture = (ROOT / "docs/images" if whole else folder) / "trace.svg"
         draw(cells, picture)
         told.append(str(picture))
-        if whole:
-            text = ratios(cells, told_by_benchmark["context"]["embree"])
-            page = ROOT / "docs/performance.md"
-            page.write_text(re.sub(r"(<!-- trace -->\n).*(<!-- end of trace -->)",
-                                   lambda m: m[1] + "\n" + text + "\n" + m[2],
-                                   page.read_text(),
-                                   flags=re.S))
-            told.append(str(page))
     print("\n" + ", ".join(told))
     sys.exit(done.returncode)
 

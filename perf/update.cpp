@@ -4,8 +4,8 @@
 //
 // update [--scene NAME]... [--frames N]
 //
-// A scene is a file, `GENERATOR SIZE`, `balls`, `meshes N` (N meshes of 1520 triangles, of which the
-// one in the middle moves alone) or `ground N` (one alone moves over a ground of 2 N^2).
+// A scene is a file, `GENERATOR SIZE`, `balls`, `meshes N` (N meshes of 1520 triangles, of which
+// the one in the middle moves alone) or `ground N` (one alone moves over a ground of 2 N^2).
 //
 // Prints a table of Markdown: milliseconds a frame, the median. Grelha: World::update() and one
 // stream of rays. Embree (robust): a commit after the vertices are copied, and its fastest way of

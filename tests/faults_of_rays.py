@@ -215,9 +215,9 @@ FAULTS = [
     Fault("< for <= in the walk", "kernel/traverse/packet_walk.hpp", "slice <= last;",
           "slice < last;", "traverse", "Isa/Walk.*"),
     Fault("adding up instead of computing again", "kernel/traverse/dda.hpp",
-          "return (plane - place[axis]) * inverse[axis];",
+          "return (plane - origin_in_cells[axis]) * inverse[axis];",
           """return [&] {
-        const float from = place[axis], to = plane, step = inverse[axis];
+        const float from = origin_in_cells[axis], to = plane, step = inverse[axis];
         float k = to > from ? __builtin_ceilf(from) : __builtin_floorf(from);
         float sum = (k - from) * step;
         for (; k < to; ++k) sum += step;
@@ -225,10 +225,10 @@ FAULTS = [
         return sum;
       }();""", "traverse", "Isa/Walk.*"),
     Fault("a ray alone that stays in its cell", "kernel/traverse/dda.hpp",
-          "at_ = at_ + masked(axis, way_);", "", "isa",
+          "at_ = at_ + masked(axis, step_);", "", "isa",
           "*Copies.AskOneRay*"),
     Fault("a ray alone that takes a plane for the one before", "kernel/traverse/dda.hpp",
-          "exit_ = axis ? ahead_ : exit_;", "", "isa",
+          "exit_ = axis ? exit_after_ : exit_;", "", "isa",
           "*Copies.AskOneRay*"),
     Fault("a ray alone that leaps a cell too far", "kernel/traverse/dda.hpp",
           "to_ints(way_) * by", "to_ints(way_) * (by + 1)", "isa",

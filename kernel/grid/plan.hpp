@@ -210,7 +210,7 @@ int threads_of(const BuildOptions& options);
 /// The pad around primitives for rays that start within `near_distance` of their box on each axis,
 /// `near_distance` no less than its diagonal. Such rays are at most 1 + sqrt 3 near distances from
 /// any primitive. A walk in float is off by at most 32 u of the near distance, and by as much along
-/// its way (derived in docs/numerics.md).
+/// its way (derived in docs/proofs.md).
 double pad_of(double near_distance);
 /// All finite primitives that have a position.
 std::vector<std::uint32_t> valid_ids(const Primitives& p);

@@ -159,8 +159,8 @@ struct BlockCorners {
   return mask_or(distance > Block(ball.reach), above > Block(ball.radius) * length);
 }
 
-/// The same from afar, of SearchBall::min_distance(): it is convex, so the plane that touches it at one
-/// corner bounds it.
+/// The same from afar, of SearchBall::min_distance(): it is convex, so the plane that touches it at
+/// one corner bounds it.
 [[gnu::always_inline]] inline Mask<Block> are_beyond_afar(const SearchBall& ball,
                                                           const BlockCorners& t) {
   const Vec3<Block> slope = ball.slope(t.a);
@@ -224,7 +224,7 @@ struct BlockCorners {
 // The search for the point of a scene that is nearest to another: down levels of boxes, the nearest
 // first.
 
-/// Distance in double, and coordinates: error <= kDistanceError * distance (docs/numerics.md).
+/// Distance in double, and coordinates: error <= kDistanceError * distance (docs/proofs.md).
 inline constexpr double kDistanceError = 0x1p-44;
 
 /// Of some boxes of a row, by bits, the one that is nearest.

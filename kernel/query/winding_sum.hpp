@@ -46,7 +46,7 @@ inline constexpr double kLeastParts = 0x1p-8;
 inline constexpr double kVolumeError = 0x1p-47;
 
 /// Half the solid angles of the triangles of a block, positive where their corners are clockwise as
-/// seen from the point; 0 where it lies in one. docs/numerics.md derives the error: 2^-40 where no
+/// seen from the point; 0 where it lies in one. docs/proofs.md derives the error: 2^-40 where no
 /// edge is nearer than 2^-24 of its length.
 ///
 /// Source  Van Oosterom, Strackee, "The Solid Angle of a Plane Triangle", 1983.

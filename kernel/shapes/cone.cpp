@@ -7,8 +7,8 @@
 namespace grelha {
 namespace {
 
-/// Least height = kFlattest * wider radius. A flatter cone is taken to be so high, which moves it by 4
-/// u of that radius.
+/// Least height = kFlattest * wider radius. A flatter cone is taken to be so high, which moves it
+/// by 4 u of that radius.
 constexpr double kFlattest = 0x1p-22;
 
 struct ConeEnd {

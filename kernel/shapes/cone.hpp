@@ -97,7 +97,7 @@ struct Cone {
 
 namespace grelha::GRELHA_ISA {
 
-// Bounds of floats for lines that surely pass a cone by; docs/numerics.md derives them.
+// Bounds of floats for lines that surely pass a cone by; docs/proofs.md derives them.
 
 /// Squared radius of the cylinder around a cone = kWider * square of the wider radius.
 inline constexpr float kWider = 1.125f;
@@ -158,15 +158,15 @@ template <class Real>
   return ConePass<Real>(ray, cone).may_cross;
 }
 
-// Error bounds of floats or doubles, in u; docs/numerics.md derives each, cone_test.cpp pins them.
+// Error bounds of floats or doubles, in u; docs/proofs.md derives each, cone_test.cpp pins them.
 // T: the distance from the ray's origin to the cone and its size together, with the error of
 // coordinates, in u: points beside the cone are off by 8 u T. G: (1 + slope)^2.
 
-/// Discriminant: error <= kDiscError * T R G^2 / dir^2, R being how far from the narrower end the line
-/// passes and the radius there together.
+/// Discriminant: error <= kDiscError * T R G^2 / dir^2, R being how far from the narrower end the
+/// line passes and the radius there together.
 inline constexpr double kDiscError = 128;
-/// Square of a point's distance to the axis less that of the side there: error <= kSideError * T R G,
-/// R being both distances together.
+/// Square of a point's distance to the axis less that of the side there: error <= kSideError * T R
+/// G, R being both distances together.
 inline constexpr double kSideError = 64;
 /// The same of where a ray starts, T being its distance and the radius.
 inline constexpr double kStartError = 12;

@@ -14,8 +14,8 @@ namespace {
 
 /// t of spheres and cones that agree to this part of themselves are equal.
 constexpr double kEqualWide = 0x1p-90;
-/// Volume between a point and three corners: error <= kWideVolumeError * product of its distances to
-/// them.
+/// Volume between a point and three corners: error <= kWideVolumeError * product of its distances
+/// to them.
 constexpr double kWideVolumeError = 0x1p-94;
 
 int sign_of(const DoubleDouble& x) {

@@ -1,7 +1,7 @@
 #pragma once
 // Rays as the tests of primitives see them, and what tests find: spans of t in floats, and the
 // doubles and exact numbers that decide what floats cannot. Given floats are exact numbers.
-// Derivations: docs/numerics.md.
+// Derivations: docs/proofs.md.
 
 #include <type_traits>
 

@@ -70,7 +70,7 @@ struct Plane {
 namespace grelha::GRELHA_ISA {
 
 /// Bounds the crossings of rays and infinite planes in a precision, from either side; parallel rays
-/// do not cross. docs/numerics.md derives the bounds: 4 u of its terms for the product with the
+/// do not cross. docs/proofs.md derives the bounds: 4 u of its terms for the product with the
 /// direction, 5 u for the product with the way to the point; 8 u are used here.
 template <class Real>
 [[gnu::always_inline]] inline HitInterval<Real> bound(const SimdRays<Real>& ray,

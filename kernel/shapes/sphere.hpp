@@ -118,11 +118,11 @@ struct Sphere {
 
 namespace grelha::GRELHA_ISA {
 
-// Error bounds of floats or doubles, in u; docs/numerics.md derives each, sphere_test.cpp pins
+// Error bounds of floats or doubles, in u; docs/proofs.md derives each, sphere_test.cpp pins
 // them. L: the distances to the centre along the axes together, and the error of coordinates, in u.
 
-/// Chords: with w = kFarError (L + r) and that of a root, (r + w) w bounds the error of the square of
-/// half a chord, and w / |dir| that of its middle.
+/// Chords: with w = kFarError (L + r) and that of a root, (r + w) w bounds the error of the square
+/// of half a chord, and w / |dir| that of its middle.
 inline constexpr double kFarError = 16;
 
 /// The chords that rays' lines have in spheres.
@@ -269,7 +269,7 @@ template <class Real>
 /// Narrows spans that hold a crossing each; not `sure` where it may not.
 ///
 /// Source    Moore, Interval Analysis (1966): one step of Newton's method from the middle of the
-///           span, by the slope's interval over it. No square root; docs/numerics.md has the bound.
+///           span, by the slope's interval over it. No square root; docs/proofs.md has the bound.
 template <class Real>
 [[gnu::always_inline]] inline HitInterval<Real> narrowed(const SimdRays<Real>& ray,
                                                          const Sphere::Fields<Real>& sphere,

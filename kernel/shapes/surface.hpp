@@ -5,7 +5,7 @@
 // computed from the primitive, not from org + t dir, which is off by eps times the distance
 // travelled; the remaining error (`offset`) is bounded from the primitive's size and position:
 // pbrt's idea (Pharr, Jakob, Humphreys, PBR 4th ed., 6.8), one scalar bound for all axes.
-// Derivations: docs/numerics.md; kept by leaving_test.cpp.
+// Derivations: docs/proofs.md; kept by leaving_test.cpp.
 
 #include "kernel/shapes/shapes.hpp"
 

@@ -10,8 +10,8 @@ namespace grelha::GRELHA_ISA {
 
 inline constexpr float kEps = 5.9604645e-8f;  ///< half an ulp of 1
 
-/// A point of a triangle in double: error <= kWideEps * its largest coordinate, some 30 roundings of
-/// 2^-53.
+/// A point of a triangle in double: error <= kWideEps * its largest coordinate, some 30 roundings
+/// of 2^-53.
 inline constexpr float kWideEps = 0x1p-48f;
 
 template <class Real>

@@ -264,7 +264,7 @@ inline Vec3<Real> permute_axes(const Real& axis, const Vec3<Real>& v) {
           select(x, v.x, select(y, v.y, v.z))};
 }
 
-// Error bounds of floats or doubles, in u, half an ulp of 1; docs/numerics.md derives each,
+// Error bounds of floats or doubles, in u, half an ulp of 1; docs/proofs.md derives each,
 // triangle_test.cpp pins them. S: the largest sheared coordinate of a corner, Z: the largest depth
 // of one. "Spread" is S (S + Z) over the sum of the edge functions, times the range of the corners'
 // t.
@@ -272,8 +272,8 @@ inline Vec3<Real> permute_axes(const Real& axis, const Vec3<Real>& v) {
 /// Edge function: error <= kEdgeError * S (S + Z). It is 24 u: a sheared corner is off by u (4
 /// (S + Z) + S).
 inline constexpr double kEdgeError = 32;
-/// t: error <= kDepthError * spread + kDepthRounding * t. It is 72 u by the edges, a quarter of whose
-/// sum may be wrong, and 36 u by the mean.
+/// t: error <= kDepthError * spread + kDepthRounding * t. It is 72 u by the edges, a quarter of
+/// whose sum may be wrong, and 36 u by the mean.
 inline constexpr double kDepthError = 256;
 inline constexpr double kDepthRounding = 16;
 /// Added to the range: more than underflow takes from the corners' t and their weighted sum.

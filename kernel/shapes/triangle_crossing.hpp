@@ -101,7 +101,7 @@ inline TriangleVertices<Wide<Real>> to_double(const TriangleVertices<Real>& c) {
 }
 
 /// A normal times a vector: error <= kProductError * product of sizes, 16 u. It is 9 u, as
-/// docs/numerics.md derives. Below kLeastProduct floats may have underflowed.
+/// docs/proofs.md derives. Below kLeastProduct floats may have underflowed.
 inline constexpr float kProductError = 0x1p-20f;
 inline constexpr float kLeastProduct = 0x1p-100f;
 

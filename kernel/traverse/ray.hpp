@@ -67,8 +67,8 @@ inline constexpr float kThinStay = 1e-3f;
 /// Sides of a frustum: error <= kSideRounding * farthest position * steepest slope, 38 u.
 inline constexpr float kSideRounding = 2.3e-6f;
 
-/// Planes in world coordinates: further error <= kPlaneRounding * farthest position from 0 * steepest
-/// slope, 14 u.
+/// Planes in world coordinates: further error <= kPlaneRounding * farthest position from 0 *
+/// steepest slope, 14 u.
 inline constexpr float kPlaneRounding = 1e-6f;
 
 /// A float test may find a ball or a cone hit that lies within kPadOfBalls * pad of a ray of the

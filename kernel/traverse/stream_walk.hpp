@@ -358,7 +358,7 @@ class CellTests {
 /// 1994). A hit is never clipped to its cell; a walk ends once the hit lies at or before the exit
 /// of the cell. Plane distances come from the plane's index, never by adding up; if float takes a
 /// ray to the wrong side of a corner, the error is less than the pad around primitives
-/// (docs/numerics.md).
+/// (docs/proofs.md).
 template <Find kFind>
 [[gnu::noinline]] void stream_traverse(const GridView& g, Packet& p, TraceCounts& n) {
   ActiveRays rays(g, p);

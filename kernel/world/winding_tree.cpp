@@ -73,7 +73,7 @@ constexpr double kThirdTimes[10] = {1, 1, 1, 3, 3, 3, 3, 3, 3, 6};
 /// Of the derivatives of r / |r|^3: -3 r r / |r|^5, half of 15 r r r / |r|^7.
 constexpr double kOfSecond = -3;
 constexpr double kOfThird = 7.5;
-/// More than the root of 24 * 105 over 6, which docs/numerics.md derives.
+/// More than the root of 24 * 105 over 6, which docs/proofs.md derives.
 constexpr double kOfFourth = 8.3667;
 
 struct Extent {

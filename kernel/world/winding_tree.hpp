@@ -20,7 +20,7 @@ namespace grelha {
 /// factors that a term of them is counted with are in the numbers.
 ///
 /// Source  Barill, Dickson, Schmidt, Levin, Jacobson, "Fast Winding Numbers for Soups and Clouds",
-///         2018. The bound of the error is our own: docs/numerics.md.
+///         2018. The bound of the error is our own: docs/proofs.md.
 struct alignas(64) WindingRow {
   double center[3][kBlock];
   double radius[kBlock];     ///< no place is further from the center

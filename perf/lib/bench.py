@@ -148,9 +148,17 @@ def csv_bench(doc, name, command, draw, told):
     print(section, numbers, chart, sep="\n")
 
 
-def table_bench(doc, name):
+def columns_of(text, columns):
+    """Some columns of the tables of Markdown in a text."""
+    def shorter(line):
+        cells = line.strip("|").split("|")
+        return f"|{'|'.join(cells[c] for c in columns)}|" if line.startswith("|") else line
+    return "\n".join(map(shorter, text.splitlines())) + "\n" if columns else text
+
+
+def table_bench(doc, name, columns=(), has_section=True):
     """Runs a benchmark that prints a table, prints and returns it; --keep: into
-    docs/performance.md."""
+    docs/performance.md, or some of its columns."""
     parser = argparse.ArgumentParser(description=doc.partition("\n")[0])
     parser.add_argument("--program", default=ROOT / "build/release/grelha",
                         help="the benchmark stands beside it [build/release/grelha]")
@@ -161,12 +169,12 @@ def table_bench(doc, name):
     if done.returncode:
         print(done.stdout)
         sys.exit(done.returncode)
-    section = (f"{done.stdout}\n{cpu_name()}, one thread, commit {commit()}, "
-               f"`./run perf {name} --keep`.")
-    if asked.keep:
+    if asked.keep and has_section:
+        section = (f"{columns_of(done.stdout, columns)}\n{cpu_name()}, one thread, commit "
+                   f"{commit()}, `./run perf {name} --keep`.")
         put_section(DOCS / "performance.md", f"perf/{name}.py", section)
-    print(section)
-    return section
+    print(done.stdout)
+    return done.stdout
 
 
 def commit():

@@ -1,4 +1,8 @@
 """Tables of docs/performance.md that are made from a CSV, whenever perf/figures.py runs."""
+import math
+import statistics
+
+SPHERES = ("balls", "rings", "distant")  # how names of scenes without triangles begin
 
 
 def table(header, rows):
@@ -26,6 +30,49 @@ def build(rows):
                     f"{ms['grelha_2'] / ms['embree_medium_2']:.2f}",
                     f"{ms['grelha_1'] / ms['grelha_2']:.2f}"])
     return table(["", "1 thread", "2 threads", "two threads over one"], out)
+
+
+def mean(values):
+    return f"{math.exp(statistics.fmean(map(math.log, values))):.2f}"
+
+
+def trace(rows):
+    """Geometric means of times over Embree's, by kind of ray: streams, the slowest, calls."""
+    rows = [r for r in rows if r["ratio"]]
+
+    def cells(of):
+        def ratios(column, spheres):
+            return [float(r[column]) for r in of
+                    if r["scene"].startswith(SPHERES) == spheres]
+        slowest = max(of, key=lambda r: float(r["ratio"]))
+        return [mean(ratios("ratio", True)), mean(ratios("ratio", False)),
+                f"{float(slowest['ratio']):.2f} ({slowest['scene']})",
+                mean(ratios("ratio_of_calls", True)), mean(ratios("ratio_of_calls", False))]
+
+    kinds = dict.fromkeys(r["kind"] for r in rows)
+    return table(["rays", "streams, spheres", "streams, triangles", "slowest scene",
+                  "calls, spheres", "calls, triangles"],
+                 [[kind, *cells([r for r in rows if r["kind"] == kind])] for kind in kinds]
+                 + [["all", *cells(rows)]])
+
+
+def over(rows, place, way, other):
+    return mean([float(r[way]) / float(r[other]) for r in rows
+                 if r["points"] == place and r[other] != "-"])
+
+
+def distance(rows):
+    """Geometric means of times over Embree's and CGAL's, by where the points lie."""
+    places = dict.fromkeys(r["points"] for r in rows)
+    return table(["points", "arrays over Embree", "calls over Embree", "arrays over CGAL"],
+                 [[p, over(rows, p, "array", "Embree"), over(rows, p, "call", "Embree"),
+                   over(rows, p, "array", "CGAL")] for p in places])
+
+
+def distances(rows):
+    """From the least to the largest mean over Embree's."""
+    means = sorted(over(rows, p, "array", "Embree") for p in {r["points"] for r in rows})
+    return f"{means[0]} to {means[-1]}"
 
 
 def targets(ratio, profile):

@@ -8,8 +8,8 @@ namespace grelha::python {
 
 /// Meshes whose arrays were joined. `counts`, (meshes, 2): the vertices and faces of each.
 ModelParts joined_parts(py::handle vertices, py::handle faces, py::handle counts);
-/// A model where some meshes have other vertices, as many, in the frame of before: pairs of mesh and
-/// vertices. It is `before` itself, changed, where nobody shares it and little is built, else a
+/// A model where some meshes have other vertices, as many, in the frame of before: pairs of mesh
+/// and vertices. It is `before` itself, changed, where nobody shares it and little is built, else a
 /// copy. Throws TypeError and ValueError that name the argument, or the method.
 SharedModel meshes_moved(const SharedModel& before,
                          const py::list& moves,

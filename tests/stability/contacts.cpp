@@ -67,7 +67,7 @@ void contacts(Random& random, std::size_t rays, const Sink& sink) {
     const double coarse =
         6e-8 * (size * 40 + std::abs(place.x) + std::abs(place.y) + std::abs(place.z));
     // Wide enough for both walls' rounding and the start's: 16 (e1 + e2) u + 4 u p
-    // (docs/numerics.md), doubled.
+    // (docs/proofs.md), doubled.
     Trial trial;
     const Walls walls(random, size, place, std::max(1e-3 * size, 100 * coarse));
     trial.scene = walls.scene;

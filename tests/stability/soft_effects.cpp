@@ -92,7 +92,7 @@ PictureCounts roughness_of_nothing(int size) {
 /// Discs of a tenth of a pixel, one in every fourth pixel each way. Four corners that agree miss
 /// them; `--error` must show each, as it doubts every pixel in which something may hide.
 PictureCounts small_discs(int size) {
-  // pixels an eighth of a radian wide are too wide to be watched (docs/numerics.md)
+  // pixels an eighth of a radian wide are too wide to be watched (docs/proofs.md)
   size = std::max(size, 16);
   PictureCounts c;
   Scene s;

@@ -83,7 +83,7 @@ TEST(BlockOrder, PutsNeighboursInOneBlock) {
 }
 
 /// By what a walk can be off, 32 u of how far away rays may start beside its way and along it
-/// (docs/numerics.md); rays start further than the grid is wide.
+/// (docs/proofs.md); rays start further than the grid is wide.
 TEST(Pads, HoldWhatRoundingTakes) {
   constexpr double kLeast = 202 * 0x1p-24;
   for (const Case& c : cases()) {

@@ -93,7 +93,7 @@ TEST(TriangleOracle, DecidesLikeTheExactOutline) {
 }
 
 /// How far the point found lies from the triangle, slivers included: kernel/shapes/triangle.hpp
-/// and docs/numerics.md say 46 eps reach. The weights are of doubles: the point they make lies on
+/// and docs/proofs.md say 46 eps reach. The weights are of doubles: the point they make lies on
 /// the ray but for some 64 roundings of the reach, which slivers lengthen.
 TEST(TriangleOracle, PointsLieOnTheTriangle) {
   oracle::Real worst = 0;
