@@ -22,7 +22,7 @@ import time
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE / "lib"), str(HERE / "charts")]
 from bench import (  # noqa: E402
-    DOCS, DRAW_HELP, ROOT, cpu_name, put_section, read_csv, record, table)
+    DOCS, DRAW_HELP, ROOT, cpu_name, read_csv, record, table)
 from chart import draw  # noqa: E402
 from image_error import Workshop  # noqa: E402
 
@@ -92,7 +92,6 @@ def make(name, shop, asked, plan, out):
     print(told, flush=True)
     if out == DOCS and not asked.draw:
         record(f"charts-{name}")
-        put_section(DOCS / "accuracy.md", "perf/charts.py", told, name)
 
 
 def main():

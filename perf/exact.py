@@ -3,14 +3,14 @@
 
     ./run perf exact [--keep] [--draw] [--rays N] [--rounds N] [--scene NAME]
 
---keep writes docs/exact.csv, docs/images/exact.svg and the table of docs/accuracy.md; else CSV and
+--keep writes docs/exact.csv, docs/images/exact.svg and the totals of docs/accuracy.md; else CSV and
 chart stand beside the program.
 """
 import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
-from bench import COLOURS, commit, cpu_name, csv_bench, plt, table
+from bench import COLOURS, commit, cpu_name, csv_bench, plt
 
 LOOKS = {"grelha calls": ("o", 0), "grelha streams": ("s", 2), "embree robust": ("^", 1),
          "embree": ("v", 4), "CGAL exact": ("D", 3), "CGAL predicates": ("P", 5)}
@@ -40,23 +40,11 @@ def draw(rows, about, path):
 
 
 def told(rows, about):
-    places = list(dict.fromkeys((r["mesh"], r["moved"], r["eye"]) for r in rows))
     names = [who for who in LOOKS if any(r["who"] == who for r in rows)]
-    cells = {(r["mesh"], r["moved"], r["eye"], r["who"]): r for r in rows}
-    lines = []
-    for place in places:
-        line = [place[0].split(".")[0], f"{float(place[1]):,.0f}", f"{float(place[2]):,g}"]
-        for who in names:
-            r = cells[(*place, who)]
-            counts = ", ".join(r[k] for k in ("lost", "false", "other")) if wrong(r) else "0"
-            line.append(f"{counts}; {float(r['ns']):,.0f}")
-        lines.append(line)
     sums = {who: sum(wrong(r) for r in rows if r["who"] == who) for who in names}
     said = ", ".join(f"{who} {n:,}" for who, n in sums.items())
-    return (f"{about}. Of each: lost, false, another triangle (0: none of these); ns a ray.\n\n"
-            + table(["mesh", "moved by, diagonals", "eye, diagonals", *names], lines)
-            + f"\n\nWrong in all: {said}. {cpu_name()}, commit {commit()}, "
-            + "`./run perf exact --keep`.")
+    return (f"{about}. Wrong in all: {said}. {cpu_name()}, commit {commit()}, "
+            "`./run perf exact --keep`.")
 
 
 if __name__ == "__main__":

@@ -23,9 +23,8 @@ DOCS = ROOT / "docs"
 PAGES = [ROOT / "README.md", *sorted(DOCS.glob("*.md"))]
 SECTIONS = {  # what a section's maker measures, by its marks
     "frame, profile": "frame-profile", "frame, povray": "frame-povray", "report": "report",
-    "stability": "stability", "ranks": "ranks", "error_suite": "error-suite",
-    "charts, picture": "charts-picture", "charts, grid": "charts-grid",
-    "charts, features": "charts-features", "exact": "exact",
+    "stability": "stability", "error_suite": "error-suite",
+    "exact": "exact",
 }
 
 
@@ -60,16 +59,24 @@ def ratios(column):
 
 
 def lost():
-    """Rays that were sent and lost, of the table of perf/lost.py, by tracer."""
-    page = (DOCS / "python.md").read_text()
-    section = re.search(r"<!-- made by perf/lost.py -->(.*?)<!-- end of lost -->", page, re.S)[1]
-    first = section.split("\n\n")[0]
-    meshes = sum(line.startswith("|") for line in first.splitlines()) - 3
-    each = int(re.search(r"([\d,]+) rays each", section)[1].replace(",", ""))
-    grelha, robust, fast = (cell.strip() for cell in
-                            re.search(r"^\| all \|(.*)\|$", first, re.M)[1].split("|")[1:])
-    return {"lost rays": f"{3 * each * meshes // 10**6} million", "lost by Grelha": grelha,
-            "lost by robust": robust, "lost by fast": fast}
+    """Rays that were sent and lost, by tracer and where they aim."""
+    rows = rows_of("lost")
+
+    def count(*tracers, aims=("vertices", "edges", "random"), column="lost"):
+        return sum(int(r[column]) for r in rows if r["tracer"] in tracers and r["aim"] in aims)
+    sent = {aims: count("Grelha", aims=aims, column="rays") // 10**6
+            for aims in (("vertices",), ("edges", "random"))}
+    return {"sent at vertices": f"{sent['vertices',]} million",
+            "sent elsewhere": f"{sent['edges', 'random']} million",
+            "lost": doc_tables.lost(rows), "lost by Grelha": f"{count('Grelha'):,}",
+            "robust at vertices": f"{count('Embree robust', aims=['vertices']):,}",
+            "robust elsewhere": f"{count('Embree robust', aims=['edges', 'random']):,}"}
+
+
+def python_time():
+    rows = rows_of("python-time")
+    return {"python streams": mean([float(r["ratio"]) for r in rows]),
+            "python calls": span([float(r["one_python_us"]) for r in rows])}
 
 
 def figures():
@@ -88,7 +95,7 @@ def figures():
             "embree": span([1 / r for r in ratios("ratio")]), "calls": span(calls),
             "calls in the mean": mean(calls), "streams": span(ratios("ratio")),
             "streams in the mean": mean(ratios("ratio"))}
-    told |= lost()
+    told |= lost() | python_time()
     return told | {f"measured {name}": text for name, text in measured().items()}
 
 

@@ -4,9 +4,11 @@
     ./run perf lost [--rays N] [--keep]
 
 Meshes are scaled to a box of 1, on multiples of 2^-16: closed stays closed, and rays go exactly
-through vertices and middles of edges. --keep writes the table of docs/python.md.
+through vertices and middles of edges. --keep writes docs/lost.csv, of which perf/figures.py makes
+the table of docs/accuracy.md.
 """
 import argparse
+import csv
 import pathlib
 import sys
 import time
@@ -15,7 +17,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
 try:
     import numpy as np
     import grelha
-    from bench import DOCS, ROOT, commit, cpu_name, put_section, table
+    from bench import DOCS, ROOT, record
 except ImportError as error:
     print("skipped:", error)
     sys.exit(77)
@@ -24,6 +26,7 @@ import embree_c
 SCANS = ("screwdriver", "armadillo", "horse", "dragon", "turbineblade")
 STEP, BATCH, POINTS, AWAY = 2.0**-16, 250_000, 40, 8
 AIMS = ("vertices", "edges", "random")
+HEADER = ["mesh", "triangles", "tracer", "aim", "rays", "lost", "us_a_ray"]
 
 
 def ball(rings, around):
@@ -149,29 +152,23 @@ def main():
     parser.add_argument("--rays", type=int, default=1_000_000, help="of each aim [1000000]")
     parser.add_argument("--keep", action="store_true", help="write into docs/")
     options = parser.parse_args()
-    library, lines, times, sums, start = embree_c.load(), [], [], {}, time.time()
+    library, rows, start = embree_c.load(), [], time.time()
     for name, *mesh in meshes():
         vertices, faces = scaled(*mesh)
         if not is_closed(faces):
             sys.exit(f"{name} is not closed")
         lost, spent = lost_of(vertices, faces, options.rays, library)
-        who = list(dict.fromkeys(w for w, _ in lost))
-        lines.append([name, f"{len(faces):,}"]
-                     + [", ".join(f"{lost[w, aim]:,}" for aim in AIMS) for w in who])
-        times.append([name] + [", ".join(f"{1e6 * spent[w, aim] / options.rays:.2f}"
-                                         for aim in AIMS) for w in who])
-        for w in who:
-            sums[w] = sums.get(w, 0) + sum(lost[w, aim] for aim in AIMS)
-    lines.append(["all", ""] + [f"{n:,}" for n in sums.values()])
-    beside = "" if library else ", no Embree 3 here"
-    section = (table(["mesh, lost rays", "triangles", *sums], lines) + "\n\n"
-               + table(["mesh, us a ray", *sums], times)
-               + f"\n\n{options.rays:,} rays each at {', '.join(AIMS)}{beside}; one thread. "
-               + f"{cpu_name()}, commit {commit()}, `./run perf lost --keep`.")
+        rows += [[name, len(faces), who, aim, options.rays, count,
+                  f"{1e6 * spent[who, aim] / options.rays:.2f}"]
+                 for (who, aim), count in lost.items()]
+        print(*rows[-len(lost):], sep="\n", flush=True)
+    path = (DOCS if options.keep else ROOT / "build") / "lost.csv"
+    with open(path, "w", newline="") as f:
+        csv.writer(f, lineterminator="\n").writerows([HEADER, *rows])
     if options.keep:
-        put_section(DOCS / "python.md", "perf/lost.py", section)
-    print(section, f"{time.time() - start:.0f} s", sep="\n")
-    sys.exit(sums["Grelha"] > 0)
+        record("lost")
+    print(path, f"{time.time() - start:.0f} s", sep="\n")
+    sys.exit(any(lost for _, _, who, _, _, lost, _ in rows if who == "Grelha"))
 
 
 if __name__ == "__main__":

@@ -4,9 +4,11 @@
     ./run perf python_time [--rays N] [--rounds N] [--keep]
 
 Camera rays at meshes, and rays in random order; nearest hits with t, id, u and v. The languages
-take turns, in processes of their own. --keep writes the table of docs/python.md.
+take turns, in processes of their own. --keep writes docs/python-time.csv, of which perf/figures.py
+makes the figures of docs/python.md.
 """
 import argparse
+import csv
 import pathlib
 import subprocess
 import sys
@@ -17,7 +19,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
 try:
     import numpy as np
     import grelha
-    from bench import DOCS, ROOT, commit, cores, cpu_name, put_section, table
+    from bench import DOCS, ROOT, cores, record
 except ImportError as error:
     print("skipped:", error)
     sys.exit(77)
@@ -25,6 +27,7 @@ except ImportError as error:
 MESHES = (ROOT / "scenes/data/torus.ply", ROOT.parent / "shared/scenes/ply/bunny.ply",
           ROOT.parent / "shared/scenes/ply/armadillo.ply")
 CALLS = 2000
+HEADER = ["rays", "threads", "python_ms", "cpp_ms", "ratio", "one_python_us", "one_cpp_us"]
 TURN = 3  # calls at a time: the first of a process finds no memory ready
 
 
@@ -99,17 +102,18 @@ def main():
                         default=ROOT / "build/python/same_call")
     parser.add_argument("--rays", type=int, default=1_000_000)
     parser.add_argument("--rounds", type=int, default=9, help="the least time counts [9]")
-    parser.add_argument("--keep", action="store_true", help="write into docs/python.md")
+    parser.add_argument("--keep", action="store_true", help="write into docs/")
     asked = parser.parse_args()
-    header = ["rays", "threads", "Python, ms", "C++, ms", "ratio", "one ray from Python, us",
-              "C++, us"]
-    count = int(asked.rays**.5)**2
-    section = (f"{table(header, rows(asked))}\n\n{count:,} rays of closest() with t, id, u and v: "
-               "from Python into new arrays, in C++ into arrays that are there. Then calls for one "
-               f"ray. {cpu_name()}, commit {commit()}, `./run perf python_time --keep`.")
+    path = (DOCS if asked.keep else ROOT / "build") / "python-time.csv"
+    with open(path, "w", newline="") as f:
+        lines = csv.writer(f, lineterminator="\n")
+        lines.writerow(HEADER)
+        for line in rows(asked):
+            print(*line, flush=True)
+            lines.writerow(line)
     if asked.keep:
-        put_section(DOCS / "python.md", "perf/python_time.py", section)
-    print(section)
+        record("python-time")
+    print(path)
 
 
 if __name__ == "__main__":

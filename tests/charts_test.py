@@ -175,7 +175,7 @@ def figure_of(name):
             module.draw(known, pathlib.Path(folder) / "chart.svg")
         return close.call_args[0][0]
     rows = {
-        "frame": ["frame-profile"], "ranks": ["ranks-pieces", "ranks"],
+        "frame": ["frame-profile"],
         "report": ["report"]
     }[name]
     known = module.from_csv(*map(bench.read_csv, rows))

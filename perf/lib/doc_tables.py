@@ -56,6 +56,18 @@ def trace(rows):
                  + [["all", *cells(rows)]])
 
 
+def lost(rows):
+    """Rays that were lost, and the mean time of a ray, by where rays aim."""
+    tracers = list(dict.fromkeys(r["tracer"] for r in rows))
+    lines = []
+    for aim in dict.fromkeys(r["aim"] for r in rows):
+        own = [[r for r in rows if r["aim"] == aim and r["tracer"] == t] for t in tracers]
+        lines.append([f"{sum(int(r['rays']) for r in own[0]):,} at {aim}",
+                      *(f"{sum(int(r['lost']) for r in of):,}; "
+                        f"{mean([float(r['us_a_ray']) for r in of])} us" for of in own)])
+    return table(["rays", *tracers], lines)
+
+
 def over(rows, place, way, other):
     return mean([float(r[way]) / float(r[other]) for r in rows
                  if r["points"] == place and r[other] != "-"])
