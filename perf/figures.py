@@ -66,17 +66,25 @@ def lost():
         return sum(int(r[column]) for r in rows if r["tracer"] in tracers and r["aim"] in aims)
     sent = {aims: count("Grelha", aims=aims, column="rays") // 10**6
             for aims in (("vertices",), ("edges", "random"))}
-    return {"sent at vertices": f"{sent['vertices',]} million",
-            "sent elsewhere": f"{sent['edges', 'random']} million",
-            "lost": doc_tables.lost(rows), "lost by Grelha": f"{count('Grelha'):,}",
-            "robust at vertices": f"{count('Embree robust', aims=['vertices']):,}",
-            "robust elsewhere": f"{count('Embree robust', aims=['edges', 'random']):,}"}
+    return {"sent-at-vertices": f"{sent['vertices',]} million",
+            "sent-elsewhere": f"{sent['edges', 'random']} million",
+            "lost": doc_tables.lost(rows), "lost-by-grelha": f"{count('Grelha'):,}",
+            "robust-at-vertices": f"{count('Embree robust', aims=['vertices']):,}",
+            "robust-elsewhere": f"{count('Embree robust', aims=['edges', 'random']):,}"}
 
 
 def python_time():
     rows = rows_of("python-time")
-    return {"python streams": mean([float(r["ratio"]) for r in rows]),
-            "python calls": span([float(r["one_python_us"]) for r in rows])}
+    return {"python-streams": mean([float(r["ratio"]) for r in rows]),
+            "python-calls": span([float(r["one_python_us"]) for r in rows])}
+
+
+def programs():
+    rows = [r for r in rows_of("programs") if r["ratio"]]
+    lines = {r["program"]: (r["lines"], r["embree_lines"]) for r in rows}
+    own, other = zip(*lines.values())
+    return {"programs": span([float(r["ratio"]) for r in rows]),
+            "program-lines": f"{', '.join(own)} beside {', '.join(other)}"}
 
 
 def figures():
@@ -93,9 +101,9 @@ def figures():
             "builds": span([float(r["grelha_1_least_ms"]) / float(r["embree_medium_1_least_ms"])
                             for r in rows_of("build")]),
             "embree": span([1 / r for r in ratios("ratio")]), "calls": span(calls),
-            "calls in the mean": mean(calls), "streams": span(ratios("ratio")),
-            "streams in the mean": mean(ratios("ratio"))}
-    told |= lost() | python_time()
+            "calls-mean": mean(calls), "streams": span(ratios("ratio")),
+            "streams-mean": mean(ratios("ratio"))}
+    told |= lost() | python_time() | programs()
     return told | {f"measured {name}": text for name, text in measured().items()}
 
 

@@ -4,7 +4,7 @@
     ./run perf programs [--keep] [--rounds N] [--mesh FILE]
 
 Runs perf/programs.cpp and counts the lines of perf/programs/, without comments and blank ones.
---keep writes the table into docs/library.md.
+--keep writes docs/programs.csv, of which perf/figures.py makes the figures of docs/library.md.
 """
 import argparse
 import csv
@@ -14,7 +14,10 @@ import subprocess
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "lib"))
-from bench import DOCS, ROOT, commit, cpu_name, put_section, table
+from bench import DOCS, ROOT, record
+
+HEADER = ["program", "mesh", "lines", "embree_lines", "seconds", "embree_seconds", "ratio",
+          "agree_percent"]
 
 
 def lines_of(library):
@@ -32,7 +35,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--program", default=ROOT / "build/release/grelha",
                         help="the benchmark stands beside it [build/release/grelha]")
-    parser.add_argument("--keep", action="store_true", help="write into docs/library.md")
+    parser.add_argument("--keep", action="store_true", help="write into docs/")
     asked, rest = parser.parse_known_args()
     folder = pathlib.Path(asked.program).resolve().parent
     done = subprocess.run([folder / "programs", *rest], stdout=subprocess.PIPE, text=True)
@@ -43,14 +46,15 @@ def main():
     for row in csv.DictReader(done.stdout.splitlines()):
         name, seconds = row["program"], float(row["grelha"])
         beside = [f"{float(row['embree']):.3f}", f"{seconds / float(row['embree']):.2f}",
-                  f"{100 * float(row['agree']):.2f} %"] if row["embree"] else ["–"] * 3
-        rows.append([f"{name}, {row['mesh']}", own[name], other[name], f"{seconds:.3f}", *beside])
-    header = ["program, mesh", "lines", "Embree's", "seconds", "Embree's", "ratio", "agree"]
-    section = (f"{table(header, rows)}\n\n{cpu_name()}, one thread, Embree robust, commit "
-               f"{commit()}, `./run perf programs --keep`.")
+                  f"{100 * float(row['agree']):.2f}"] if row["embree"] else [""] * 3
+        rows.append([name, row["mesh"], own[name], other[name], f"{seconds:.3f}", *beside])
+        print(*rows[-1], sep=", ", flush=True)
+    path = (DOCS if asked.keep else folder) / "programs.csv"
+    with open(path, "w", newline="") as f:
+        csv.writer(f, lineterminator="\n").writerows([HEADER, *rows])
     if asked.keep:
-        put_section(DOCS / "library.md", "perf/programs.py", section)
-    print(section)
+        record("programs")
+    print(path)
 
 
 if __name__ == "__main__":
