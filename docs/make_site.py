@@ -18,21 +18,28 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGES = {  # users' pages first, by task
     "": ["README.md"],
-    "Render": ["docs/usage.md", "docs/nff.md", "docs/ply.md", "docs/effects.md",
-               "docs/sampling.md", "docs/accuracy.md", "docs/images.md", "docs/parts.md",
-               "docs/farm.md"],
+    "Render": ["docs/usage.md", "docs/ply.md", "docs/nff.md", "docs/images.md",
+               "docs/sampling.md", "docs/accuracy.md", "docs/parts.md"],
     "Trace rays": ["docs/python.md", "docs/python-reference.md", "docs/library.md",
                    "reference/index.html"],
-    "Understand": ["docs/others.md", "docs/numerics.md", "docs/performance.md",
-                   "docs/architecture.md", "docs/rays.md", "docs/shapes.md", "docs/decisions.md",
+    "Understand": ["docs/others.md", "docs/numerics.md", "docs/proofs.md", "docs/performance.md",
+                   "docs/architecture.md", "docs/shapes.md", "docs/decisions.md",
                    "docs/glossary.md"],
-    "Work on it": ["CONTRIBUTING.md", "docs/fuzzing.md", "docs/sanitizers.md", "CHANGELOG.md"],
+    "Work on it": ["CONTRIBUTING.md", "CHANGELOG.md"],
 }
 MODULES = {  # of the Python reference: sources in order
     "grelha": ["_world.py", "_scene.py", "_results.py"],
     "grelha.open3d": ["open3d.py"],
     "grelha.trimesh": ["trimesh.py"],
 }
+FIRST_OF_REFERENCE = """# C++ and C
+
+[The library](../docs/library.html) shows what to call for which task. Here is every
+
+- [function of C](grelha_8h.html) (`grelha.h`),
+- [function of C++](namespacegrelha.html) (`grelha/grelha.hpp`),
+- [type](annotated.html), and [header](files.html).
+"""
 TOOLS = ("cmark-gfm", "doxygen")
 
 
@@ -114,17 +121,36 @@ def documented(body):
                 yield thing
 
 
+def prose_of(docstring):
+    """Markdown of a docstring: arguments, aligned in two columns, become a list."""
+    out = []
+    for paragraph in docstring.split("\n\n"):
+        lines = paragraph.splitlines()
+        if lines[0].startswith("    "):
+            out.append("```\n" + "\n".join(line[4:] for line in lines) + "\n```")
+        elif re.match(r"[\w*]+(?:, [\w*]+)* {2,}\S", lines[0]):
+            items = re.sub(r"(?m)^([\w*]+(?:, [\w*]+)*) +(?=\S)", r"- `\1`: ",
+                           re.sub(r"\n {2,}", " ", paragraph))
+            out.append(items)
+        else:
+            out.append(paragraph)
+    return "\n\n".join(out)
+
+
+def entry(heading, call, docstring):
+    return [heading, f"```\n{call}\n```", prose_of(docstring)]
+
+
 def class_text(thing, module):
     init = [f for f in thing.body if isinstance(f, ast.FunctionDef) and f.name == "__init__"]
     call = f"{module}.{thing.name}" + (f"({signature(init[0])})" if init else "")
-    text = [f"### {thing.name}", f"```\n{call}\n\n{ast.get_docstring(thing)}\n```"]
+    text = entry(f"### {thing.name}", call, ast.get_docstring(thing))
     for member in documented(thing.body):
         kinds = [ast.unparse(d) for d in member.decorator_list]
         if any(kind.endswith(".setter") for kind in kinds):
             continue
         call = member.name if "property" in kinds else f"{member.name}({signature(member)})"
-        text += [f"#### {thing.name}.{member.name}",
-                 f"```\n{call}\n\n{ast.get_docstring(member)}\n```"]
+        text += entry(f"#### {thing.name}.{member.name}", call, ast.get_docstring(member))
     return text
 
 
@@ -136,26 +162,29 @@ def python_reference():
         for source in sources:
             tree = ast.parse((ROOT / "python/grelha" / source).read_text())
             if not source.startswith("_"):
-                text.append(f"```\n{ast.get_docstring(tree)}\n```")
+                text.append(prose_of(ast.get_docstring(tree)))
             for thing in documented(tree.body):
                 if isinstance(thing, ast.ClassDef):
                     text += class_text(thing, module)
                 else:
-                    text += [f"### {thing.name}", f"```\n{module}.{thing.name}"
-                             f"({signature(thing)})\n\n{ast.get_docstring(thing)}\n```"]
+                    call = f"{module}.{thing.name}({signature(thing)})"
+                    text += entry(f"### {thing.name}", call, ast.get_docstring(thing))
     return "\n\n".join(text) + "\n"
 
 
 def make_reference(out):
     """Doxygen's pages; what it warns of."""
     settings = (ROOT / "docs/Doxyfile").read_text()
-    settings += f'OUTPUT_DIRECTORY="{out}"\nWARN_LOGFILE="{out.parent}/warnings"\n'
+    first = out.parent / "first.md"
+    first.write_text(FIRST_OF_REFERENCE)
+    settings += (f'OUTPUT_DIRECTORY="{out}"\nWARN_LOGFILE="{out.parent}/warnings"\n'
+                 f'INPUT += "{first}"\nUSE_MDFILE_AS_MAINPAGE="{first}"\n')
     subprocess.run(["doxygen", "-"], input=settings, text=True, cwd=ROOT, check=True)
     # members that share a line share its comment, which Doxygen does not see
     shared = re.compile(r"Member .* \(variable\) of .* is not documented")
     warnings = (out.parent / "warnings").read_text().splitlines()
     missing = [name for name in ("classgrelha_1_1World", "structgrelha_1_1Rays",
-                                 "structgrelha__hits")
+                                 "structgrelha__hits", "grelha_8h", "namespacegrelha")
                if not (out / f"reference/{name}.html").exists()]
     return [w for w in warnings if not shared.search(w)] + [
         f"no page {name}: a folder of headers is missing" for name in missing]

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Makes the pictures of docs/effects.md, those the report of 2019 shows:
+# Makes the pictures of docs/images.md, those the report of 2019 shows:
 #   docs/report.sh [PICTURE...]
 set -eu
 cd "$(dirname "$0")/.."

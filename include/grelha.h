@@ -1,5 +1,8 @@
 #ifndef GRELHA_H
 #define GRELHA_H
+/// @file
+/// Every function of C.
+//
 // The C interface of Grelha: exact ray queries against triangles or spheres. C99; also C++.
 //
 //     grelha_world* world;
@@ -25,6 +28,7 @@
 #include <stdint.h>
 
 #if defined(__GNUC__)
+/// Declares what libgrelha.so shows.
 #define GRELHA_API __attribute__((visibility("default")))
 #else
 #define GRELHA_API
