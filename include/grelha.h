@@ -27,8 +27,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/// @def GRELHA_API
+/// Marks what libgrelha.so exports.
 #if defined(__GNUC__)
-/// Declares what libgrelha.so shows.
 #define GRELHA_API __attribute__((visibility("default")))
 #else
 #define GRELHA_API
