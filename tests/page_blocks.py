@@ -12,15 +12,12 @@ import sys
 SKIPPED = {  # lines that begin so are not run: why
     "sudo ": "needs root",
     "./run test": "minutes: all tests",
-    "./run perf": "minutes, and a quiet machine",
     "./run scene terrain --size 200": "gigabytes: 20 million triangles",
     "./run info terrain.nff": "gigabytes",
     "/usr/bin/time -v ./run render terrain": "gigabytes",
     "cmake --preset": "minutes: a build",
     "cmake --build": "minutes: a build",
     "git clone ": "needs a network",
-    "ctest ": "tests within a test",
-    "GRELHA_PRESET=": "minutes: builds with sanitizers",
     "tests/fuzz/campaign.sh": "half an hour a target, by clang",
     "build/fuzz/": "clang's libFuzzer",
     "job=$(sbatch": "needs Slurm; the test farm_script has a stand-in",
@@ -32,7 +29,6 @@ SKIPPED = {  # lines that begin so are not run: why
     "environment/bin/python": "minutes: a build",
 }
 COMPILED = {  # how the blocks of C and C++ of a page are tested
-    ("README.md", "cpp"): "examples/first_hit.cpp",
     ("docs/library.md", "cpp"): "tests/library/CMakeLists.txt",
     ("docs/library.md", "c"): "tests/library/CMakeLists.txt",
     ("docs/shapes.md", "cpp"): "tests/fifth_kind/disc.hpp",
@@ -76,9 +72,6 @@ def code_is_tested(root, page, language, lines):
     if source.name == "CMakeLists.txt":  # it takes every block of the language
         known = re.search(rf"grelha_blocks\(\S+ {language} ", source.read_text())
         return "" if known and page in source.read_text() else f"{how} leaves out {page}"
-    if page == "README.md":
-        same = "\n".join(lines) + "\n" == source.read_text()
-        return "" if same else f"{page}: its example is not {how}"
     return "" if is_excerpt(lines, source) else f"{page}: a block is no piece of {how}"
 
 
