@@ -165,7 +165,8 @@ std::string info_of(const std::string& scene, const InfoCommand& command) {
   const bool bars = stderr_is_terminal();
   WarningLog log;
   SceneFile file = load_scene(scene, log.reporting(), command.input.read, bars);
-  apply_view(view_of(file), with_background(command.input.view, file.colors.any()), file);
+  const ViewOptions view = with_background(command.input.view, file.colors.any());
+  apply_view(view_of(file, view), view, file);
   warn_empty_scene(scene, file, log.reporting());
   warn_of_background(scene, command.input.view, log.reporting());
   log.check_none(command.input);

@@ -281,6 +281,16 @@ std::array<double, 3> point(const std::string& option, const std::string& text) 
   return numbers;
 }
 
+std::array<double, 3> direction(const std::string& option, const std::string& text) {
+  const bool has_sign = text.starts_with('+') || text.starts_with('-');
+  const std::string axis = in_small_letters(text.substr(has_sign ? 1 : 0));
+  if (axis != "x" && axis != "y" && axis != "z")
+    return point(option, text);
+  std::array<double, 3> found{};
+  found[std::size_t(axis[0] - 'x')] = text[0] == '-' ? -1 : 1;
+  return found;
+}
+
 double angle(const std::string& text) {
   const auto fits = [](double v) { return v > 0 && v < 180; };
   return fitting<double>("--angle", text, "degrees between 0 and 180", fits);
@@ -288,7 +298,8 @@ double angle(const std::string& text) {
 
 double picture_height(const std::string& text) {
   const auto fits = [](double v) { return v > 0 && v <= kLargestLength; };
-  return fitting<double>("--orthographic", text, "a height above 0 and up to 1e18", fits);
+  constexpr const char* kExpected = "auto, or a height above 0 and up to 1e18";
+  return text == "auto" ? 0 : fitting<double>("--orthographic", text, kExpected, fits);
 }
 
 double point_radius(const std::string& text) {

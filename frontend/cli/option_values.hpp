@@ -38,8 +38,10 @@ Range range(const std::string& option, const std::string& text, int most);
 /// "N", "I:J" or "I:J/N"
 void parse_samples(const std::string& text, RenderCommand& command);
 std::array<double, 3> point(const std::string& option, const std::string& text);
+/// "X,Y,Z", or an axis: "z", "+Z", "-x".
+std::array<double, 3> direction(const std::string& option, const std::string& text);
 double angle(const std::string& text);
-double picture_height(const std::string& text);
+double picture_height(const std::string& text);  ///< 0: auto
 Orbit orbit(const std::string& text);
 double point_radius(const std::string& text);  ///< 0: auto
 double smoothness(const std::string& text);

@@ -95,13 +95,15 @@ void add_view(CLI::App& app, ViewOptions& view) {
   };
   place("--eye", "where the camera is [as the scene says; info prints it]", view.eye);
   place("--at", "the point it looks at", view.at);
-  place("--up", "the direction that is up", view.up);
+  add("--up", "X,Y,Z", "what is up, also z, +z, -x; alone: frames a mesh anew", [&](Text t) {
+    view.up = direction("--up", t);
+  });
   add("--angle", "DEG", "vertical field of view", [&](Text t) { view.angle_deg = angle(t); });
   add("--orbit", "A,E,Z", "degrees to the right (180: behind), up [0]; zoom [1]", [&](Text t) {
     view.orbit = orbit(t);
   });
   add("--orthographic",
-      "HEIGHT",
+      "HEIGHT|auto",
       "parallel rays, and how much the picture shows, scene units",
       [&](Text t) { view.orthographic_height = picture_height(t); });
   add("--background",

@@ -53,10 +53,16 @@ bool is_sheet(const RenderCommand& command) {
   return command.turntable == 0 || command.image.find(kPlaceholder) == std::string::npos;
 }
 
+/// The columns that leave the fewest places of a sheet empty, where it is at most three times as
+/// wide as high; of as many, those that make it most nearly square.
 int columns_of(int views) {
+  const auto empty = [views](int columns) { return (columns - views % columns) % columns; };
   int columns = 1;
   while (columns * columns < views)
     ++columns;
+  for (int more = columns + 1; more * more <= 3 * views; ++more)
+    if (empty(more) < empty(columns))
+      columns = more;
   return columns;
 }
 
@@ -148,8 +154,7 @@ void check_isa(std::string_view name) {
   throw UsageError("this build has no " + std::string(name));
 }
 
-Camera camera_of(const SceneFile& file, const RenderCommand& command) {
-  Camera camera = file.camera;
+Camera camera_of(Camera camera, const RenderCommand& command) {
   if (command.width > 0) {
     camera.width = command.width;
     camera.height = command.height;
@@ -235,8 +240,8 @@ class SceneRender {
       prepare_outputs(command_);
     file_ = load_scene(command_.scene, log_.reporting(), command_.input.read, bars_);
     check_not_read(outputs_of(command_), file_.meshes);
-    own_ = view_of(file_);
-    own_.camera = camera_of(file_, command_);
+    own_ = view_of(file_, command_.input.view);
+    own_.camera = camera_of(own_.camera, command_);
     look(0);
   }
 
@@ -266,7 +271,7 @@ class SceneRender {
 
   /// Throws the errors that are known before rendering. Returns the memory for the picture.
   PictureMemory check() {
-    camera_ = camera_of(file_, command_);
+    camera_ = camera_of(file_.camera, command_);
     check_image_size(format_of(command_.image, command_.format),
                      camera_.width,
                      camera_.height,
@@ -337,7 +342,7 @@ class SceneRender {
   void take_view(int number) {
     look(number);
     prepare();
-    camera_ = camera_of(file_, command_);
+    camera_ = camera_of(file_.camera, command_);
   }
 
   Image render_view(const World& world, int number, Alpha& alpha) {

@@ -37,7 +37,7 @@ SceneFile read_mesh_only(const std::string& path,
   const CrossedFaces crossed = SceneBuilder(file, options.meshes).mesh(std::move(mesh), 0);
   if (const std::string text = crossed.text(); !text.empty() && warn)
     warn(path + ": warning: " + text);
-  add_default_view(file);
+  add_default_view(file, stl ? std::optional(Float3{0, 0, 1}) : std::nullopt);  // of CAD
   return file;
 }
 

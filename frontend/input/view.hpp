@@ -11,8 +11,6 @@
 
 namespace grelha {
 
-inline constexpr double kFilledByMesh = .9;  ///< of a picture's height, by a bare mesh
-
 /// A camera's way around the point it looks at, from where it stands.
 struct Orbit {
   double azimuth_deg = 0;    ///< to the right, around the up direction
@@ -27,7 +25,8 @@ inline constexpr double kLeastZoom = .001, kMostZoom = 1000;
 struct ViewOptions {
   using Point = std::optional<std::array<double, 3>>;
   Point eye, at, up;
-  std::optional<double> angle_deg, orthographic_height;
+  std::optional<double> angle_deg;
+  std::optional<double> orthographic_height;  ///< 0: such that a bare mesh fills the picture
   std::optional<Orbit> orbit;
   std::optional<Float3> background;
   bool background_is_encoded = false;  ///< by the sRGB curve, as colours of a screen are
@@ -53,8 +52,15 @@ void warn_of_background(const std::string& path, const ViewOptions& options, con
 /// The view of a file.
 View view_of(const SceneFile& file);
 
+/// The view of a file whose up direction is that of the options.
+View view_of(const SceneFile& file, const ViewOptions& options);
+
+/// Where options say what is up, and nothing else of where the camera is, gives the view of a bare
+/// mesh the camera that it would have if that were up.
+void turn_up(const Geometry& geometry, const ViewOptions& options, View& view);
+
 /// The view that options make of another one. A bare mesh fits into pictures of any format, and
-/// turns about its middle, at a distance that is the same all around. Throws std::invalid_argument
+/// turns about its up axis, at a distance that is the same all around. Throws std::invalid_argument
 /// for a camera that cannot see.
 View changed(View view, const ViewOptions& options, const Frame& frame);
 
@@ -70,12 +76,9 @@ std::vector<std::string> lines_of(const View& view, const Frame& frame);
 /// face it sees is black, and one from behind on the edges.
 std::vector<Light> lights_around(const Camera& camera);
 
-/// Adds a camera and lights to the scene of a bare mesh, whose file has neither. The camera frames
-/// the triangles from a three-quarter view, with y up, or z where the mesh surely stands on that
-/// side. A key light stands above the left shoulder, a fill at the eye, so that no face it sees is
-/// black, and one light behind. The background is
-/// soft.
-void add_default_view(SceneFile& file);
+/// Adds a camera, lights and a soft background to the scene of a bare mesh, whose file has none.
+/// `up`: absent is by the shape of the mesh (mesh_view()).
+void add_default_view(SceneFile& file, const std::optional<Float3>& up = {});
 
 /// Light grey with a mild highlight; of a mesh with colours white with less of one, for these to
 /// show as they are.

@@ -87,8 +87,11 @@ struct ColorCounts {
 
 /// Size of a mesh, for pictures of any format and from any side.
 struct MeshExtent {
-  Float3 center;      ///< of a box around it
-  double radius = 0;  ///< of a ball about that; 0: no mesh
+  Float3 center;                ///< of a box around it
+  double margin = 0;            ///< radius of balls about its points
+  double low = 0, high = 0;     ///< from the center along the up direction
+  std::vector<double> radii{};  ///< about that axis, of equal slabs from low to high; -1: of none
+  bool is_known() const { return !radii.empty(); }
   /// around the point that its made-up camera looks at, across the view and along it
   double half_width = 0, half_depth = 0;
 };

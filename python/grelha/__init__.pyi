@@ -225,14 +225,14 @@ class Scene:
                depth: int = ..., eye: _Point | None = ..., at: _Point | None = ...,
                up: _Point | None = ..., angle: float | None = ...,
                orbit: tuple[float, float] | tuple[float, float, float] | None = ...,
-               orthographic: float | None = ..., lights: ArrayLike | None = ...,
+               orthographic: float | Literal["auto"] | None = ..., lights: ArrayLike | None = ...,
                background: _Point | None = ..., transparent: bool = ...,
                threads: int = ...) -> NDArray[np.float32]: ...
     def camera_rays(self, width: int | None = ..., height: int | None = ..., *,
                     eye: _Point | None = ..., at: _Point | None = ..., up: _Point | None = ...,
                     angle: float | None = ...,
                     orbit: tuple[float, float] | tuple[float, float, float] | None = ...,
-                    orthographic: float | None = ...
+                    orthographic: float | Literal["auto"] | None = ...
                     ) -> tuple[NDArray[Any], NDArray[np.float32]]: ...
     def surfaces(self, origins: ArrayLike, directions: ArrayLike, *,
                  threads: int = ...) -> Surfaces: ...

@@ -133,12 +133,13 @@ class Scene:
         seed            of the samples
         depth           longest path, in rays
         eye, at, up     (3,) where the camera is, what it looks at, what is up; None: as the scene
-                        says
+                        says. `up` alone frames a bare mesh anew.
         angle           vertical field of view, degrees
         orbit           azimuth, (azimuth, elevation) or (azimuth, elevation, zoom): from there so
                         many degrees to the right and up around what the view shows; zoom divides
                         the angle
-        orthographic    parallel rays: the height that the picture shows, scene units
+        orthographic    parallel rays: the height that the picture shows, scene units; "auto": that
+                        which shows a bare mesh
         lights          (n, 2, 3), a position and a colour each; []: none; None: the scene's. Those
                         of a bare mesh move with the camera, unless lights=scene.lights holds them.
         background      (3,) light of rays that hit nothing, or one number: grey

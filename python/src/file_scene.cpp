@@ -46,6 +46,16 @@ std::optional<double> optional_number(py::handle given, const char* name) {
   return given.is_none() ? std::nullopt : std::optional(number_in(given, name));
 }
 
+/// 0 of "auto".
+std::optional<double> height_in(py::handle given) {
+  if (py::isinstance<py::str>(given) && given.equal(py::str("auto")))
+    return 0;
+  const std::optional<double> height = optional_number(given, "orthographic");
+  if (height && !(*height > 0 && *height <= kLargestLength))
+    wrong_value("orthographic", "a height above 0, at most 1e18", std::to_string(*height));
+  return height;
+}
+
 Orbit orbit_in(py::handle given) {
   const Doubles numbers(given, "orbit");
   const Shape& shape = numbers.shape();
@@ -96,10 +106,14 @@ View in_frame(View view, const Frame& from, const Frame& to) {
   for (double* const length : {&view.camera.aperture,
                                &view.camera.focus,
                                &view.camera.orthographic_height,
-                               &view.extent.radius,
+                               &view.extent.margin,
+                               &view.extent.low,
+                               &view.extent.high,
                                &view.extent.half_width,
                                &view.extent.half_depth})
     *length *= scale;
+  for (double& radius : view.extent.radii)
+    radius *= scale;
   for (Light& light : view.lighting.lights) {
     move(light.position);
     stretch(light.edge1);
@@ -258,15 +272,13 @@ View FileScene::view_for(const ViewArguments& given) const {
   options.at = point_in(given.at, "at");
   options.up = point_in(given.up, "up");
   options.angle_deg = optional_number(given.angle, "angle");
-  options.orthographic_height = optional_number(given.orthographic, "orthographic");
-  if (const auto& height = options.orthographic_height;
-      height && !(*height > 0 && *height <= kLargestLength))
-    wrong_value("orthographic", "a height above 0, at most 1e18", std::to_string(*height));
+  options.orthographic_height = height_in(given.orthographic);
   if (!given.orbit.is_none())
     options.orbit = orbit_in(given.orbit);
   if (!given.background.is_none())
     options.background = color_in(given.background, "background");
   View view = view_;
+  turn_up(model_->geometry(), options, view);
   if (!given.lights.is_none()) {
     view.lighting.lights = lights_in(given.lights, model_->frame);
     view.made_up_lights = false;

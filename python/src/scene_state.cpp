@@ -64,23 +64,31 @@ py::tuple point(const Float3& p) {
   return py::make_tuple(p.x, p.y, p.z);
 }
 
-std::array<double, 6> extent_state(const MeshExtent& e) {
-  return {e.center.x, e.center.y, e.center.z, e.radius, e.half_width, e.half_depth};
+Float3 point_of(const py::handle& given) {
+  const auto p = given.cast<std::array<float, 3>>();
+  return {p[0], p[1], p[2]};
 }
 
-MeshExtent extent_of(const std::array<double, 6>& state) {
-  const auto& [x, y, z, radius, half_width, half_depth] = state;
-  return {{float(x), float(y), float(z)}, radius, half_width, half_depth};
+py::tuple extent_state(const MeshExtent& e) {
+  return py::make_tuple(
+      point(e.center), e.margin, e.low, e.high, e.radii, e.half_width, e.half_depth);
+}
+
+MeshExtent extent_of(const py::tuple& state) {
+  if (state.size() != 7)
+    throw py::value_error("state: expected an extent of 7 parts");
+  return {point_of(state[0]),
+          state[1].cast<double>(),
+          state[2].cast<double>(),
+          state[3].cast<double>(),
+          state[4].cast<std::vector<double>>(),
+          state[5].cast<double>(),
+          state[6].cast<double>()};
 }
 
 py::tuple tuple_of_camera(const Camera& c) {
   return py::make_tuple(
       point(c.eye), point(c.at), point(c.up), c.angle_deg, c.width, c.height, c.aperture, c.focus);
-}
-
-Float3 point_of(const py::handle& given) {
-  const auto p = given.cast<std::array<float, 3>>();
-  return {p[0], p[1], p[2]};
 }
 
 Camera camera_of(const py::tuple& state) {
@@ -122,8 +130,7 @@ FileScene FileScene::of_state(const py::tuple& state) {
   if (background.size() != 1)
     throw py::value_error("state: expected one background");
   FileScene scene;
-  const auto [made_up, extent, samples] =
-      state[5].cast<std::tuple<bool, std::array<double, 6>, int>>();
+  const auto [made_up, extent, samples] = state[5].cast<std::tuple<bool, py::tuple, int>>();
   scene.view_ = {camera_of(state[4].cast<py::tuple>()),
                  {things_of<Light>(state[2], kLightFloats), background[0]},
                  made_up,

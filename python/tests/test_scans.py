@@ -90,6 +90,12 @@ class FromAllSides(unittest.TestCase):
                     mine = folder / "mine.pfm"
                     grelha.write_image(mine, scene.render(SIDE, SIDE, orbit=view))
                     self.assertEqual(mine.read_bytes(), picture, (path.name, view))
+                for options, view in ((["--up", "x"], {"up": (1, 0, 0)}),
+                                      (["--orthographic", "auto"], {"orthographic": "auto"})):
+                    subprocess.run([program, "render", path, "--size", f"{SIDE}x{SIDE}", "-q",
+                                    *options, "-o", folder / "his.pfm"], check=True)
+                    grelha.write_image(mine, scene.render(SIDE, SIDE, **view))
+                    self.assertEqual(mine.read_bytes(), (folder / "his.pfm").read_bytes(), view)
 
 
 class Meshes(unittest.TestCase):

@@ -71,6 +71,17 @@ TEST_F(Scans, ASheetHasAllViews) {
     }
   }
   EXPECT_EQ(sheet.substr(12 * 16, 12), sheet.substr(12 * 23, 12)) << "no sixth view";
+  for (const auto& [views, size] : {std::pair<int, const char*>{1, "8 6"},
+                                    {3, "24 6"},
+                                    {7, "32 12"},
+                                    {8, "32 12"},
+                                    {12, "32 18"},
+                                    {24, "48 24"},
+                                    {36, "48 36"}}) {
+    expect_fine("render scan.ply --samples 1 --size 8x6 -o n.pfm --turntable " +
+                std::to_string(views));
+    EXPECT_TRUE(folder_.read("n.pfm").starts_with("PF\n" + std::string(size) + '\n')) << views;
+  }
 }
 
 /// Alone, on a turntable and on its sheet; a picture says how it was made.

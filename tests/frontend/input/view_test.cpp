@@ -203,6 +203,85 @@ TEST(MadeUpCamera, FitsAllAround) {
   }
 }
 
+/// How far points reach from the middle of a picture, as shares of its half, in long double.
+struct Reach {
+  Reach(const Triangles& t, const Camera& c) {
+    const V back = oracle::unit(V(c.eye) - V(c.at)), right = oracle::unit(cross(V(c.up), back)),
+            up = cross(back, right);
+    const Real half = c.orthographic_height > 0
+                          ? Real(c.orthographic_height) / 2
+                          : std::tan(Real(c.angle_deg) * std::numbers::pi_v<Real> / 360);
+    for (std::size_t i = 0; i < t.vertex_count(); ++i) {
+      const V p = V(Float3{t.x[i], t.y[i], t.z[i]}) - V(c.eye);
+      EXPECT_LT(dot(p, back), 0) << "before the eye";
+      const Real size = c.orthographic_height > 0 ? half : -dot(p, back) * half;
+      across = std::max(across, std::abs(dot(p, right)) / size * c.height / c.width);
+      upward = std::max(upward, std::abs(dot(p, up)) / size);
+    }
+  }
+  Real across = 0, upward = 0;
+};
+
+/// A few triangles of any proportions, near the origin or away from it.
+SceneFile random_mesh(Random& random) {
+  SceneFile file;
+  Triangles& t = file.scene.geometry.triangles;
+  const Float3 middle = random.point(random.chance(.5) ? 0 : 5);
+  const double size[] = {random.log_in(.01, 3), random.log_in(.01, 3), random.log_in(.01, 3)};
+  for (std::uint32_t v = 0; v < 12; ++v) {
+    t.x.push_back(middle.x + float(random.in(-size[0], size[0])));
+    t.y.push_back(middle.y + float(random.in(-size[1], size[1])));
+    t.z.push_back(middle.z + float(random.in(-size[2], size[2])));
+    if (v % 3 == 0)
+      t.a.push_back(v), t.b.push_back(v + 1), t.c.push_back(v + 2), t.material.push_back(0);
+  }
+  add_default_view(file);
+  return file;
+}
+
+/// `--up` by `--orbit`, on a turntable, orthographic and in any format: the margin stays, the
+/// horizon is level, one zoom serves all sides, and some side fills the picture.
+TEST(MadeUpCamera, ShowsAllOfAnyMeshFromAnySide) {
+  constexpr Real kMost = .9L + 1e-4L;  // floats of a small mesh away from the origin
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    Random random(seed);
+    SceneFile file = random_mesh(random);
+    file.camera.width = random.chance(.5) ? 300 : 80 + int(random.below(600));
+    file.camera.height = random.chance(.5) ? 300 : 80 + int(random.below(600));
+    ViewOptions options;
+    if (random.chance(.7)) {
+      const Float3 up = random.direction();
+      options.up = {up.x, up.y, up.z};
+    }
+    if (random.chance(.3))
+      options.orthographic_height = 0;
+    const View own = view_of(file, options);
+    const V pole = oracle::unit(V(own.camera.up));
+    const auto expect_shown = [&](const View& view) {
+      const Camera& c = view.camera;
+      const Reach reach(file.scene.geometry.triangles, c);
+      EXPECT_LE(std::max(reach.across, reach.upward), kMost) << "seed " << seed;
+      EXPECT_LE(std::abs(dot(cross(V(c.up), V(c.eye) - V(c.at)), pole)),
+                1e-5L * length(V(c.eye) - V(c.at)))
+          << "the horizon is level, seed " << seed;
+      return std::max(reach.across, reach.upward);
+    };
+    expect_shown(changed(own, options, {}));
+    const double elevation = random.chance(.3) ? 0 : random.in(-200, 200);
+    Real most = 0, nearest = 1e30L, furthest = 0;
+    for (double azimuth = 0; azimuth < 360; azimuth += 5) {
+      options.orbit = {azimuth, elevation, 1};
+      const View view = changed(own, options, {});
+      most = std::max(most, expect_shown(view));
+      const Real distance = length(V(view.camera.eye) - V(view.camera.at));
+      nearest = std::min(nearest, distance);
+      furthest = std::max(furthest, distance);
+    }
+    EXPECT_GT(most, .87L) << "seed " << seed;
+    EXPECT_LT(furthest / nearest, 1 + 1e-4L) << "seed " << seed;
+  }
+}
+
 bool same_camera(const Camera& a, const Camera& b) {
   return a.eye == b.eye && a.at == b.at && a.up == b.up && a.angle_deg == b.angle_deg &&
          a.orthographic_height == b.orthographic_height && a.width == b.width &&
@@ -266,6 +345,8 @@ TEST(View, ACameraThatCannotSeeIsRefused) {
   EXPECT_NE(message("--eye 1,2,3 --at 1,2,3"), "");
   EXPECT_NE(message("--eye 0,0,3 --at 0,0,0 --up 0,0,1"), "");
   EXPECT_NE(message("--orbit 0,0,.1"), "") << "300 degrees";
+  EXPECT_NE(message("--up 0,0,0"), "");
+  EXPECT_NE(message("--orthographic auto --eye 1,2,3"), "");
 }
 
 TEST(ViewOptions, AreRead) {
@@ -277,6 +358,16 @@ TEST(ViewOptions, AreRead) {
   EXPECT_EQ(v.eye, (std::array{1., -2., 3e5}));
   EXPECT_EQ(v.at, (std::array{-.5, 0., 0.}));
   EXPECT_EQ(v.up, (std::array{0., 0., 1.}));
+  const auto up = [](const std::string& text) {
+    return std::get<RenderCommand>(parse("render x.stl --up=" + text)).input.view.up;
+  };
+  EXPECT_EQ(up("z"), (std::array{0., 0., 1.}));
+  EXPECT_EQ(up("+Z"), up("z"));
+  EXPECT_EQ(up("-x"), (std::array{-1., 0., 0.}));
+  EXPECT_EQ(std::get<RenderCommand>(parse("render x.stl --up -Y")).input.view.up, up("0,-1,0"));
+  EXPECT_EQ(std::get<RenderCommand>(parse("render x --orthographic auto --orbit 180"))
+                .input.view.orthographic_height,
+            0);
   EXPECT_EQ(v.angle_deg, 12.5);
   EXPECT_EQ(v.orbit->azimuth_deg, -30);
   EXPECT_EQ(v.orbit->elevation_deg, 400.5);
@@ -303,7 +394,8 @@ TEST(ViewOptions, ThatCannotBeAreRefused) {
   EXPECT_EQ(error("--orbit 1,2,0"), "--orbit: expected a zoom of .001 to 1000, found \"0\"");
   EXPECT_EQ(error("--orbit 1e9,2"), "--orbit: expected degrees, at most 100 turns, found \"1e9\"");
   EXPECT_EQ(error("--orthographic 0"),
-            "--orthographic: expected a height above 0 and up to 1e18, found \"0\"");
+            "--orthographic: expected auto, or a height above 0 and up to 1e18, found \"0\"");
+  EXPECT_EQ(error("--up zz"), "--up: expected X,Y,Z, found \"zz\"");
   EXPECT_EQ(error("--at 1e18,-1e18,0 --orthographic 1e18 --points 1e18 --shadows random:1e18"),
             "no error");
   EXPECT_EQ(error("--background 1,2"),
