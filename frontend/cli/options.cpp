@@ -69,7 +69,7 @@ void add_input_options(CLI::App& app, InputOptions& input) {
   value(app,
         "--points",
         "RADIUS|auto",
-        "draw the vertices of meshes without faces as balls",
+        "of the balls that vertices of meshes without faces are drawn as [auto]",
         [&input](Text t) { input.read.meshes.point_radius = point_radius(t); });
   value(app,
         "--smooth",

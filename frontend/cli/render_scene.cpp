@@ -277,6 +277,10 @@ class SceneRender {
                      camera_.height,
                      command_.transparent);
     warn_empty_scene(command_.scene, file_, log_.reporting());
+    if (!command_.quiet && file_.points.count > 0 && command_.input.read.meshes.point_radius == 0)
+      report_line(command_.scene + ": points without faces are drawn as " + balls_text(file_) +
+                      ", --points RADIUS sets another\n",
+                  writes_to_stdout(command_));
     warn_of_background(command_.scene, command_.input.view, log_.reporting());
     warn_of_cut_light(command_.scene, file_.scene, resolved_.render, log_.reporting());
     log_.check_none(command_.input);

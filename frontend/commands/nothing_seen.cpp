@@ -43,11 +43,7 @@ bool is_background_only(const Image& image, const Float3& background) {
 
 void warn_empty_scene(const std::string& path, const SceneFile& file, const Warn& warn) {
   const Scene& scene = file.scene;
-  if (file.points > 0)
-    warn(path + ": warning: " + std::to_string(file.points) +
-         (file.points == 1 ? " point has" : " points have") +
-         " no faces and will not be drawn: --points auto draws them as balls");
-  else if (is_empty(scene.geometry))
+  if (is_empty(scene.geometry))
     warn(path + ": warning: nothing to draw: " +
          (file.default_camera ? "the mesh has no triangle"
                               : "add an object, such as \"s 0 0 0 1\""));

@@ -128,7 +128,8 @@ std::string point_text(const Frame& frame, const Float3& v) {
   return print(form, x, y, z);
 }
 
-void list_entities(std::string& text, const EntityCounts& c) {
+void list_entities(std::string& text, const SceneFile& file) {
+  const EntityCounts& c = file.counts;
   const std::pair<const char*, std::uint64_t> entities[] = {{"s", c.s},
                                                             {"p", c.p},
                                                             {"pp", c.pp},
@@ -136,7 +137,8 @@ void list_entities(std::string& text, const EntityCounts& c) {
                                                             {"pl", c.pl},
                                                             {"box", c.box},
                                                             {"mesh faces", c.mesh},
-                                                            {"ply faces", c.ply}};
+                                                            {"ply faces", c.ply},
+                                                            {"points", file.points.count}};
   std::string line;
   for (const auto& [name, count] : entities)
     if (count > 0)
@@ -306,6 +308,12 @@ std::string error_text(const ErrorStats& e, const RunReport& report) {
 
 }  // namespace
 
+std::string balls_text(const SceneFile& file) {
+  const auto& [count, least, most] = file.points;
+  return print("balls of radius %g", least / file.frame.scale) +
+         (most > least ? print(" to %g", most / file.frame.scale) : "");
+}
+
 std::string unmet_error(const RenderCommand& command, const RunReport& report) {
   const ErrorStats& e = report.render.error;
   const double asked = command.render.refine.error;
@@ -351,6 +359,10 @@ std::string info_json(const SceneFile& file,
                     {"cones", geometry.cones.size()},
                     {"planes", geometry.planes.size()},
                     {"objects", geometry.objects.size()}};
+  json["points"] = nullptr;
+  if (file.points.count > 0)
+    json["points"] = {{"count", file.points.count},
+                      {"radius", file.points.most / file.frame.scale}};
   json["dropped"] = {{"not_finite", file.dropped.not_finite},
                      {"zero_area", file.dropped.zero_area}};
   json["aabb"] = nullptr;
@@ -387,10 +399,12 @@ std::string info_text(const std::string& path,
                       const std::optional<std::vector<GridStats>>& grids) {
   const Geometry& g = file.scene.geometry;
   std::string text = printable_line(path) + ": " + size_text(file.camera) + '\n';
-  list_entities(text, file.counts);
+  list_entities(text, file);
   text += "primitives    " +
           primitives_text(g.spheres.size(), g.triangles.size(), g.cones.size(), g.planes.size()) +
           '\n';
+  if (file.points.count > 0)
+    text += "points        " + balls_text(file) + '\n';
   text += dropped_text(file.dropped);
   text += "lights        " + std::to_string(file.counts.lights) +
           (file.default_light ? " (and made-up ones)\n" : "\n");

@@ -50,6 +50,9 @@ std::string info_text(const std::string& path,
                       const std::optional<std::vector<GridStats>>& grids);
 std::string report_line_of(const RenderCommand& command, const RunReport& report);
 
+/// "balls of radius 0.1", or of several, for vertices without faces.
+std::string balls_text(const SceneFile& file);
+
 /// The features of a renderer by name, and whether the scene uses them. Materials that no primitive
 /// has do not count.
 using Needs = std::vector<std::pair<const char*, bool>>;

@@ -242,8 +242,8 @@ MeshView mesh_view(const Geometry& geometry, const std::optional<Float3>& wanted
       moved(moved(moved({0, 0, 0}, across.middle(), axes.right), upward.middle(), axes.up),
             middle,
             axes.back);
-  view.camera.eye = in_floats(moved(at, distance, axes.back));
-  view.camera.at = in_floats(at);
+  view.camera.eye = in_steps(moved(at, distance, axes.back), distance);
+  view.camera.at = in_steps(at, distance);
   view.camera.angle_deg = kAngleDeg;
   view.extent.half_depth = (front - behind) / 2 + view.extent.margin;
   for (const Point3& p : points)

@@ -31,8 +31,6 @@ SceneFile read_mesh_only(const std::string& path,
   Mesh mesh = read_mesh(path, bytes, warn, &progress, options.frame, options.meshes.colors);
   std::string().swap(bytes);  // they are as large as the mesh
   (stl ? file.counts.mesh : file.counts.ply) = mesh.face_count();
-  if (mesh.face_count() == 0 && !options.meshes.point_radius)
-    file.points = mesh.vertex_count();
   file.scene.materials.push_back(default_mesh_material(!mesh.red.empty()));
   const CrossedFaces crossed = SceneBuilder(file, options.meshes).mesh(std::move(mesh), 0);
   if (const std::string text = crossed.text(); !text.empty() && warn)

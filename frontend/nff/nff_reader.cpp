@@ -73,7 +73,6 @@ class NffReader {
         meshes_(path, warn, options, progress),
         input_(words_, warning_list_, options.frame),
         build_(file_, options.meshes),
-        draws_points_(options.meshes.point_radius.has_value()),
         simple_(input_, file_),
         lights_(file_) {
     file_.source_bytes = text.size();
@@ -128,7 +127,6 @@ class NffReader {
   NffMeshFiles meshes_;
   NffInput input_;
   SceneBuilder build_;
-  const bool draws_points_;
   NffSimple simple_;
   NffView view_;
   NffLights lights_;
@@ -334,8 +332,6 @@ void NffReader::read_ply(std::string_view keyword) {
   const std::string path = meshes_.path(input_, name);
   Mesh mesh = meshes_.read(input_, name, path, file_);
   const std::size_t faces = mesh.face_count();
-  if (faces == 0 && !draws_points_)
-    file_.points += mesh.vertex_count();
   const CrossedFaces crossed = build_.mesh(std::move(mesh), material(keyword));
   if (const std::string text = crossed.text(); !text.empty() && warning_list_.first("of " + path))
     warning_list_.add_line(path + ": warning: " + text);

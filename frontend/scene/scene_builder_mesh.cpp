@@ -133,21 +133,29 @@ std::vector<std::uint32_t> SceneBuilder::materials_of(const Mesh& mesh,
   return materials_of_colors(mesh, file_.scene.materials, of);
 }
 
-/// Draws vertices as balls.
+/// Draws vertices as balls. Of those in a row at one place the first one is seen: some scanners
+/// write zeros for what they did not see.
 void SceneBuilder::points(const Mesh& mesh, std::uint32_t material) {
-  const float asked = file_.frame.length(*options_.point_radius);
+  const float asked = file_.frame.length(options_.point_radius);
   const float radius = asked > 0 ? asked : radius_for(mesh.x, mesh.y, mesh.z);
   const auto materials = materials_of(mesh, mesh.vertex_count(), material);
+  const auto place = [&](std::size_t i) { return Float3{mesh.x[i], mesh.y[i], mesh.z[i]}; };
   for (std::size_t i = 0; i < mesh.vertex_count(); ++i)
-    sphere({mesh.x[i], mesh.y[i], mesh.z[i]}, radius, materials.empty() ? material : materials[i]);
+    if (i == 0 || place(i) != place(i - 1))
+      sphere(place(i), radius, materials.empty() ? material : materials[i]);
+  Points& all = file_.points;
+  all.least = all.count == 0 ? radius : std::min(all.least, radius);
+  all.most = std::max(all.most, radius);
+  all.count += mesh.vertex_count();
 }
 
 CrossedFaces SceneBuilder::mesh(Mesh mesh, std::uint32_t material) {
   file_.colors.of_faces |= mesh.colors_of_faces;
   file_.colors.of_vertices |= !mesh.colors_of_faces && !mesh.red.empty();
   file_.colors.alpha |= mesh.has_alpha;
-  if (mesh.face_count() == 0 && options_.point_radius) {
-    points(mesh, material);
+  if (mesh.face_count() == 0) {
+    if (mesh.vertex_count() > 0)
+      points(mesh, material);
     return {};
   }
   Triangles& t = file_.scene.geometry.triangles;

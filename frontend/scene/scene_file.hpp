@@ -65,6 +65,12 @@ struct Dropped {
   PointBounds flat;  ///< of the corners of those without area, which may have some in double
 };
 
+/// Vertices of meshes without faces, which are drawn as balls.
+struct Points {
+  std::uint64_t count = 0;
+  float least = 0, most = 0;  ///< radii
+};
+
 /// Lens fields as the file states them; `present` if the file has any.
 struct LensHint {
   bool present = false;
@@ -104,7 +110,7 @@ struct SceneFile {
   EntityCounts counts;
   ColorCounts colors;
   Dropped dropped;
-  std::uint64_t points = 0;  ///< vertices of meshes without faces
+  Points points;
   LensHint lens;
   std::string accelerator;    ///< `accel` hint as written, or empty
   int samples_per_pixel = 0;  ///< `spp` hint, 0: none
@@ -124,8 +130,8 @@ using Warn = std::function<void(const std::string&)>;
 struct MeshOptions {
   bool colors = true;  ///< are read
   /// of balls in place of vertices, where there are no faces, in the file's units; 0: such that
-  /// they touch; absent: none
-  std::optional<double> point_radius{};
+  /// they leave few gaps
+  double point_radius = 0;
   double smooth_deg = 0;  ///< of smooth_normals(), where no vertex has a normal; 0: none
 };
 

@@ -183,8 +183,8 @@ def read(path, *, colors=True, points=None, smooth=None, material=None, threads=
     """Reads an NFF, P3F, PLY or STL file, each also gzipped: a Scene.
 
     colors     False leaves out those of meshes
-    points     the vertices of a mesh without faces become spheres of this radius; "auto": of one
-               that leaves few gaps
+    points     the vertices of a mesh without faces become spheres of this radius; None or "auto":
+               of one that leaves few gaps
     smooth     degrees, up to 180: meshes without normals get some, but for edges that turn by more
     material   of a PLY or STL file, as of Scene
 

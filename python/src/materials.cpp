@@ -96,12 +96,11 @@ double smoothness_in(py::handle given) {
 
 MeshOptions meshes_in(bool colors, py::handle points, py::handle smooth) {
   MeshOptions meshes{.colors = colors};
-  if (py::isinstance<py::str>(points) && points.equal(py::str("auto"))) {
-    meshes.point_radius = 0;
-  } else if (!points.is_none()) {
+  const bool choose = py::isinstance<py::str>(points) && points.equal(py::str("auto"));
+  if (!choose && !points.is_none()) {
     meshes.point_radius = number_in(points, "points");
-    if (!(*meshes.point_radius > 0 && *meshes.point_radius <= kLargestLength))
-      wrong_value("points", "\"auto\" or a radius above 0", std::to_string(*meshes.point_radius));
+    if (!(meshes.point_radius > 0 && meshes.point_radius <= kLargestLength))
+      wrong_value("points", "\"auto\" or a radius above 0", std::to_string(meshes.point_radius));
   }
   meshes.smooth_deg = smoothness_in(smooth);
   return meshes;

@@ -247,7 +247,7 @@ TEST_F(Hostile, CloudsOfPoints) {
       "property float z\nend_header\n";
   text.append(std::size_t(5000000) * 12, '\0');
   folder_.write("cloud.ply", text);
-  expect_both_bounded("cloud.ply", 0, "5000000 points have no faces");
+  expect_both_bounded("cloud.ply", 0, "");
 }
 
 }  // namespace

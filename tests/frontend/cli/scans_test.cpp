@@ -1,5 +1,6 @@
 // Meshes with colours, and views of them from several sides, by the built program.
 #include "tests/frontend/cli/program.hpp"
+#include "tests/support/reading.hpp"
 
 namespace grelha::test {
 namespace {
@@ -104,6 +105,29 @@ TEST_F(Scans, TransparentPicturesAreThoseOfTheirViews) {
                 "v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 40\nhither 1\n"
                 "resolution 8 8\nb 1 1 1\nl 5 5 5\nf 0 0 0 0 0 0 0 0\ns 0 0 0 1\n");
   expect_fine("render black.nff --transparent --strict -o black.png");
+}
+
+/// Without any option; a line says their radius, which is no warning.
+TEST_F(Scans, PointsAreSeen) {
+  folder_.write("cloud.ply",
+                "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+                "property float z\nend_header\n0 0 0\n0 0 0\n2 0 0\n0 2 0\n");
+  folder_.write("scene.nff", kView + "l 0 0 9 1 1 1\n" + kFill + "ply cloud.ply\n");
+  for (const std::string scene : {"cloud.ply", "scene.nff"}) {
+    const Outcome made = run("render " + scene + " --size 20x20 --strict -o seen.png");
+    EXPECT_EQ(made.status, 0) << made.err;
+    EXPECT_NE(made.out.find(scene + ": points without faces are drawn as balls of radius 1.3, "
+                                    "--points RADIUS sets another\n"),
+              std::string::npos)
+        << made.out;
+    EXPECT_NE(made.out.find("3 spheres"), std::string::npos) << "one of those in a row";
+  }
+  EXPECT_EQ(run("render cloud.ply -q --size 8x8 -o seen.png").out, "");
+  EXPECT_EQ(run("render cloud.ply --points 1 --size 8x8 -o seen.png").out.find("radius"),
+            std::string::npos);
+  const std::string info = run("info cloud.ply").out;
+  EXPECT_NE(info.find("in the file   4 points\n"), std::string::npos) << info;
+  EXPECT_NE(info.find("points        balls of radius 1.3\n"), std::string::npos) << info;
 }
 
 TEST_F(Scans, TurntablesThatCannotBe) {

@@ -28,11 +28,6 @@ TEST(NothingSeen, NoPrimitives) {
   EXPECT_EQ(said(kLit),
             Lines{"x.nff: warning: nothing to draw: add an object, such as \"s 0 0 0 1\""});
   EXPECT_EQ(said(kLit + "s 0 0 0 1"), Lines{});
-  SceneFile cloud = read_text(kLit).file;
-  cloud.points = 3;
-  EXPECT_EQ(said(cloud),
-            Lines{"x.nff: warning: 3 points have no faces and will not be drawn: --points "
-                  "auto draws them as balls"});
 }
 
 TEST(NothingSeen, NoLight) {

@@ -206,7 +206,8 @@ TEST(Info, JsonSaysWhatTheSceneHolds) {
                                    "mesh",
                                    "needs",
                                    "view",
-                                   "made_up"}));
+                                   "made_up",
+                                   "points"}));
   EXPECT_EQ(json["scene"]["s"], 1);
   EXPECT_EQ(json["kernel"]["spheres"], 1);
   EXPECT_EQ(json["dropped"], Json::parse(R"({"not_finite":3,"zero_area":4})"));
