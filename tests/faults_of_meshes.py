@@ -23,7 +23,7 @@ FAULTS = [
     of_mesh("loops of no vertices", STL, "if (end < loop_ + 3)",
             "if (end < loop_ + 3 && end != loop_)", "Stl.WhatIsBroken*"),
     of_mesh("one line that is a name", STL,
-            "keyword_of(word) == Keyword::kFacet && content_begins()", "false",
+            "keyword == Keyword::kFacet && content_begins()", "false",
             "Stl.LoopsAndSolids"),
     of_mesh("loops that come back", STL, "if (end > loop_ + 3 && is_first",
             "if (false && is_first", "Stl.LoopsAndSolids"),

@@ -239,6 +239,25 @@ std::string bounds_text(const Frame& frame, const SceneBounds& bounds) {
                             point_text(frame, bounds.high) + '\n';
 }
 
+/// A line for each solid, up to some.
+std::string solids_text(const std::vector<NamedObject>& solids) {
+  constexpr std::size_t kMost = 20;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kMost, solids.size()); ++i)
+    text += (i == 0 ? "solids        " : "              ") + counted(solids[i].faces, "face") +
+            (solids[i].name.empty() ? "" : ": " + solids[i].name) + '\n';
+  if (solids.size() > kMost)
+    text += "              and " + std::to_string(solids.size() - kMost) + " more\n";
+  return text;
+}
+
+Json solids_json(const std::vector<NamedObject>& solids) {
+  Json all = Json::array();
+  for (const NamedObject& solid : solids)
+    all.push_back({{"name", solid.name}, {"faces", solid.faces}});
+  return all;
+}
+
 std::string memory_text(const SceneMemory& memory) {
   return print(
       "memory        about %.1f MB to render: scene %.1f, grids %.1f, the rest to read, build and "
@@ -363,6 +382,7 @@ std::string info_json(const SceneFile& file,
   if (file.points.count > 0)
     json["points"] = {{"count", file.points.count},
                       {"radius", file.points.most / file.frame.scale}};
+  json["solids"] = solids_json(file.solids);
   json["dropped"] = {{"not_finite", file.dropped.not_finite},
                      {"zero_area", file.dropped.zero_area}};
   json["aabb"] = nullptr;
@@ -405,7 +425,7 @@ std::string info_text(const std::string& path,
           '\n';
   if (file.points.count > 0)
     text += "points        " + balls_text(file) + '\n';
-  text += dropped_text(file.dropped);
+  text += solids_text(file.solids) + dropped_text(file.dropped);
   text += "lights        " + std::to_string(file.counts.lights) +
           (file.default_light ? " (and made-up ones)\n" : "\n");
   if (file.box_order != BoxOrder::kNone)

@@ -44,7 +44,7 @@ Mesh read_mesh(const std::string& path,
                const Frame& frame,
                bool with_colors) {
   return mesh_format(path, bytes) == MeshFormat::kStl
-             ? read_stl_mesh(path, bytes, warn, progress, frame)
+             ? read_stl_mesh(path, bytes, warn, progress, frame, with_colors)
              : read_ply_mesh(path, bytes, warn, progress, frame, with_colors);
 }
 

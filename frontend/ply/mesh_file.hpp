@@ -27,14 +27,15 @@ Mesh read_ply_mesh(const std::string& path,
 bool is_stl(std::string_view bytes);
 
 /// Reads an STL file, binary or text: whichever the bytes can be. Corners with the same coordinates
-/// become one vertex; vertices come in the frame, in the order in which the file names them first.
-/// Normals of facets, colours and attributes are not used. Throws ParseError, which names the byte
-/// inside binary data.
+/// of a solid become one vertex; vertices come in the frame, in the order in which the file names
+/// them first. Colours are those of stl_colors.hpp. Normals of facets are not used. Throws
+/// ParseError, which names the byte inside binary data.
 Mesh read_stl_mesh(const std::string& path,
                    std::string_view bytes,
                    const Warn& warn,
                    LoadProgress* progress,
-                   const Frame& frame);
+                   const Frame& frame,
+                   bool with_colors = true);
 
 enum class MeshFormat : std::uint8_t { kNone, kPly, kStl };
 

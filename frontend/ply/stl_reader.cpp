@@ -9,14 +9,17 @@
 #include <cstring>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "frontend/files/load_progress.hpp"
 #include "frontend/files/other_formats.hpp"
 #include "frontend/files/text.hpp"
+#include "frontend/ply/stl_colors.hpp"
 #include "frontend/scene/mesh.hpp"
 #include "frontend/scene/scene_file.hpp"
 
@@ -63,7 +66,8 @@ class StlText {
   void take_unknown(std::string_view word);
   void skip_comment(std::string_view word);
   void skip_rest();
-  void skip_name();
+  std::string_view take_name(bool behind_end);
+  void begin_solid(std::string_view name);
   bool content_begins() const;
   double coordinate();
   void read_vertex();
@@ -80,6 +84,8 @@ class StlText {
   std::size_t loop_ = 0;  ///< the first vertex of the loop
   bool in_loop_ = false, in_solid_ = false, ended_ = false;
   std::string_view skipped_;  ///< the first word of no meaning
+  std::string_view name_;     ///< of the solid that begins with the next facet,
+  bool begun_ = true;         ///< if one does
 };
 
 constexpr std::size_t kBegin = 84;  // 80 bytes of any content, and the number of triangles
@@ -206,12 +212,15 @@ std::optional<StlLayout> loose_stl_layout(std::string_view bytes) {
   return plain(unknown ? most : count);
 }
 
-/// Appends three vertices for each triangle.
-void read_stl_binary(std::string_view bytes,
-                     const StlLayout& layout,
-                     ParseProgress& progress,
-                     const Frame& frame,
-                     Mesh& mesh) {
+/// Appends three vertices for each triangle. Returns their attributes where these are no lengths.
+std::vector<std::uint16_t> read_stl_binary(std::string_view bytes,
+                                           const StlLayout& layout,
+                                           ParseProgress& progress,
+                                           const Frame& frame,
+                                           Mesh& mesh) {
+  std::vector<std::uint16_t> attributes;
+  if (!layout.has_lengths)
+    attributes.reserve(layout.triangles);
   for (std::vector<float>* const of : {&mesh.x, &mesh.y, &mesh.z})
     of->reserve(3 * layout.triangles);
   const char* p = bytes.data() + kBegin;
@@ -222,9 +231,14 @@ void read_stl_binary(std::string_view bytes,
       };
       mesh.add_vertex(frame.inside({number(0), number(1), number(2)}));
     }
-    p += kTriangle + (layout.has_lengths ? attribute_at(p) : 0);
+    const std::size_t attribute = attribute_at(p);
+    if (!layout.has_lengths)
+      attributes.push_back(static_cast<std::uint16_t>(
+          layout.big_endian ? attribute >> 8 | attribute << 8 : attribute));
+    p += kTriangle + (layout.has_lengths ? attribute : 0);
     progress.at(p);
   }
+  return attributes;
 }
 
 /// No keyword has more letters; a string of so many needs no memory.
@@ -345,13 +359,26 @@ void StlText::skip_rest() {
   }
 }
 
-/// Skips the name of a solid, which may be any text, up to the first facet on its line.
-void StlText::skip_name() {
+/// Takes the name of a solid, which may be any text, up to the first facet on its line, its end, or
+/// the next solid behind `endsolid`.
+std::string_view StlText::take_name(bool behind_end) {
+  std::string_view name;
   for (std::string_view word = words_.peek_on_line(); !word.empty(); word = words_.peek_on_line()) {
-    if (keyword_of(word) == Keyword::kFacet && content_begins())
-      return;
+    const Keyword keyword = keyword_of(word);
+    if ((keyword == Keyword::kFacet && content_begins()) || keyword == Keyword::kEndSolid ||
+        (behind_end && keyword == Keyword::kSolid))
+      break;
     words_.next();
+    const char* const begin = name.empty() ? word.data() : name.data();
+    name = {begin, std::size_t(word.data() + word.size() - begin)};
   }
+  return name.substr(0, name.find('\0'));
+}
+
+/// What follows is a solid of its own.
+void StlText::begin_solid(std::string_view name) {
+  name_ = name;
+  begun_ = true;
 }
 
 void StlText::skip_comment(std::string_view word) {
@@ -399,6 +426,10 @@ void StlText::end_loop(std::string_view word) {
   for (std::size_t v = loop_; v < end; ++v)
     mesh_.indices.push_back(std::uint32_t(v));
   mesh_.close_face(std::uint32_t(end - loop_));
+  if (std::exchange(begun_, false))
+    mesh_.solids.push_back({std::string(name_)});
+  ++mesh_.solids.back().faces;
+  mesh_.solids.back().corners += end - loop_;
   loop_ = end;
   in_loop_ = false;
 }
@@ -447,9 +478,10 @@ void StlText::take(Keyword keyword, std::string_view word) {
       return words_.skip_line();
     case Keyword::kSolid:
       in_solid_ = true;
-      return expect_no_loop(word), skip_name();
+      return expect_no_loop(word), begin_solid(take_name(false));
     case Keyword::kEndSolid:
-      return expect_no_loop(word), skip_name();
+      take_name(true);
+      return expect_no_loop(word), begin_solid({});
   }
 }
 
@@ -509,7 +541,8 @@ bool is_far_from_text(std::string_view bytes) {
          std::ranges::count_if(bytes.substr(kHeader, kFirstTriangle), other) >= kLeast;
 }
 
-/// Joins corners with the same coordinates, which are all that tells which triangles touch.
+/// Joins corners of a solid with the same coordinates, which are all that tells which triangles
+/// touch.
 void join_corners(Mesh& mesh) {
   std::vector<std::uint32_t> order(mesh.x.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -517,13 +550,24 @@ void join_corners(Mesh& mesh) {
     const auto bits = [](float c) { return std::bit_cast<std::uint32_t>(c == 0 ? 0.f : c); };
     return std::tuple(bits(mesh.x[i]), bits(mesh.y[i]), bits(mesh.z[i]));
   };
-  std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) {
-    return std::tuple(place(a), a) < std::tuple(place(b), b);
-  });
+  std::vector<std::size_t> ends;  // of the corners of each solid
+  for (const Solid& solid : mesh.solids)
+    ends.push_back((ends.empty() ? 0 : ends.back()) + solid.corners);
+  if (ends.empty())
+    ends.push_back(order.size());
   mesh.indices.resize(order.size());  // first the first corner at each place
-  for (std::size_t k = 0; k < order.size(); ++k)
-    mesh.indices[order[k]] =
-        k > 0 && place(order[k]) == place(order[k - 1]) ? mesh.indices[order[k - 1]] : order[k];
+  std::size_t begin = 0;
+  for (const std::size_t end : ends) {
+    const std::span corners(order.data() + begin, end - begin);
+    std::ranges::sort(corners, [&](std::uint32_t a, std::uint32_t b) {
+      return std::tuple(place(a), a) < std::tuple(place(b), b);
+    });
+    for (std::size_t k = 0; k < corners.size(); ++k)
+      mesh.indices[corners[k]] = k > 0 && place(corners[k]) == place(corners[k - 1])
+                                     ? mesh.indices[corners[k - 1]]
+                                     : corners[k];
+    begin = end;
+  }
   std::uint32_t vertices = 0;
   for (std::uint32_t i = 0; i < mesh.indices.size(); ++i) {
     std::uint32_t& at = mesh.indices[i];
@@ -577,15 +621,21 @@ Mesh read_stl_mesh(const std::string& path,
                    std::string_view bytes,
                    const Warn& warn,
                    LoadProgress* progress,
-                   const Frame& frame) {
+                   const Frame& frame,
+                   bool with_colors) {
   Mesh mesh;
   ParseProgress parsed(progress, bytes.data());
   const auto exact = exact_stl_layout(bytes);
-  if (!exact && is_text(bytes))
+  if (!exact && is_text(bytes)) {
     StlText(path, bytes, warn, parsed, frame, mesh).read();
-  else
-    read_stl_binary(bytes, exact ? *exact : loose_layout(path, bytes, warn), parsed, frame, mesh);
+    join_corners(mesh);
+    return mesh;
+  }
+  const StlLayout layout = exact ? *exact : loose_layout(path, bytes, warn);
+  const auto attributes = read_stl_binary(bytes, layout, parsed, frame, mesh);
   join_corners(mesh);
+  if (with_colors)
+    color_stl_faces(bytes.substr(0, kHeader), attributes, mesh);
   return mesh;
 }
 

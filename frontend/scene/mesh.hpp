@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "grelha/coordinates.hpp"
@@ -17,6 +18,12 @@ inline bool is_finite_float(const Float3& v) {
   return is_finite_float(v.x) && is_finite_float(v.y) && is_finite_float(v.z);
 }
 
+/// A part of a mesh that its file names.
+struct Solid {
+  std::string name{};
+  std::size_t faces = 0, corners = 0;
+};
+
 /// Faces over shared vertices as a file gives them, indices already checked.
 struct Mesh {
   std::vector<float> x, y, z;           ///< [vertices]
@@ -25,6 +32,8 @@ struct Mesh {
   bool colors_of_faces = false, has_alpha = false;
   std::vector<std::uint32_t> indices;  ///< vertices of all faces, one face after the other
   std::vector<std::uint32_t> sizes;    ///< [faces] corners of each, or empty: all are triangles
+  /// of all faces, one after the other, with vertices of their own that lie in this order; or empty
+  std::vector<Solid> solids;
   std::size_t vertex_count() const { return x.size(); }
   std::size_t face_count() const { return sizes.empty() ? indices.size() / 3 : sizes.size(); }
   void add_vertex(const Float3& p) {

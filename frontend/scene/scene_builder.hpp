@@ -23,6 +23,8 @@ struct CrossedFaces {
   std::uint64_t filled = 0, left_out = 0, folded = 0;
   std::uint64_t first = 0, first_folded = 0;  ///< number of the first one, from 0
   void add(PolygonSplitter::Result result, std::uint64_t face);
+  /// Adds those of a mesh behind `faces` faces.
+  void add(const CrossedFaces& more, std::uint64_t faces);
   /// The text of a warning; empty if there are no such faces.
   std::string text() const;
 };
@@ -56,7 +58,7 @@ class SceneBuilder {
   /// Any two opposite corners. A box without thickness along one axis is drawn as its two large
   /// faces.
   void box(Float3 corner, Float3 opposite, std::uint32_t material);
-  /// Becomes an object of its own.
+  /// Becomes an object of its own, or its solids do.
   CrossedFaces mesh(Mesh mesh, std::uint32_t material);
 
  private:
@@ -83,6 +85,7 @@ class SceneBuilder {
                           std::span<const std::uint32_t> materials);
   std::vector<std::uint32_t> materials_of(const Mesh& mesh, std::size_t count, std::uint32_t of);
   void points(const Mesh& mesh, std::uint32_t material);
+  CrossedFaces object(Mesh mesh, std::uint32_t material);
   Result mesh_face(std::span<const std::uint32_t> corner_points,
                    std::uint32_t first_vertex,
                    std::uint32_t material);

@@ -149,6 +149,44 @@ void SceneBuilder::points(const Mesh& mesh, std::uint32_t material) {
   all.count += mesh.vertex_count();
 }
 
+namespace {
+
+/// The solids of a mesh as meshes of their own, one after the other.
+class SolidsInTurn {
+ public:
+  explicit SolidsInTurn(const Mesh& all) : all_(all) {}
+
+  Mesh next(const Solid& solid) {
+    Mesh one;
+    one.indices.assign(all_.indices.begin() + at(corner_),
+                       all_.indices.begin() + at(corner_ + solid.corners));
+    const std::size_t end = 1 + *std::ranges::max_element(one.indices);
+    for (std::uint32_t& index : one.indices)
+      index -= std::uint32_t(vertex_);
+    const auto copy = [&](const std::vector<float>& from, std::vector<float>& to) {
+      to.assign(from.begin() + at(vertex_), from.begin() + at(end));
+    };
+    copy(all_.x, one.x);
+    copy(all_.y, one.y);
+    copy(all_.z, one.z);
+    if (!all_.sizes.empty())
+      one.sizes.assign(all_.sizes.begin() + at(face_),
+                       all_.sizes.begin() + at(face_ + solid.faces));
+    vertex_ = end;
+    corner_ += solid.corners;
+    face_ += solid.faces;
+    return one;
+  }
+
+ private:
+  static std::ptrdiff_t at(std::size_t i) { return std::ptrdiff_t(i); }
+
+  const Mesh& all_;
+  std::size_t vertex_ = 0, corner_ = 0, face_ = 0;
+};
+
+}  // namespace
+
 CrossedFaces SceneBuilder::mesh(Mesh mesh, std::uint32_t material) {
   file_.colors.of_faces |= mesh.colors_of_faces;
   file_.colors.of_vertices |= !mesh.colors_of_faces && !mesh.red.empty();
@@ -158,6 +196,26 @@ CrossedFaces SceneBuilder::mesh(Mesh mesh, std::uint32_t material) {
       points(mesh, material);
     return {};
   }
+  if (mesh.solids.empty())
+    return object(std::move(mesh), material);
+  CrossedFaces crossed;
+  std::uint64_t faces = 0;
+  const Triangles& t = file_.scene.geometry.triangles;
+  SolidsInTurn solids(mesh);
+  for (const Solid& solid : mesh.solids) {
+    const auto first_triangle = std::uint32_t(t.size()),
+               first_vertex = std::uint32_t(t.vertex_count());
+    crossed.add(object(solids.next(solid), material), faces);
+    faces += solid.faces;
+    const Object own{first_triangle, std::uint32_t(t.size()) - first_triangle};
+    if (own.triangle_count == 0)
+      file_.scene.geometry.objects.push_back(own);
+    file_.solids.push_back({solid.name, solid.faces, own, first_vertex});
+  }
+  return crossed;
+}
+
+CrossedFaces SceneBuilder::object(Mesh mesh, std::uint32_t material) {
   Triangles& t = file_.scene.geometry.triangles;
   const auto first_vertex = std::uint32_t(t.vertex_count()),
              first_triangle = std::uint32_t(t.size());
@@ -237,6 +295,16 @@ void CrossedFaces::add(PolygonSplitter::Result result, std::uint64_t face) {
       first = face;
     ++(result == Result::kFilled ? filled : left_out);
   }
+}
+
+void CrossedFaces::add(const CrossedFaces& more, std::uint64_t faces) {
+  if (filled + left_out == 0)
+    first = more.first + faces;
+  if (folded == 0)
+    first_folded = more.first_folded + faces;
+  filled += more.filled;
+  left_out += more.left_out;
+  folded += more.folded;
 }
 
 /// `face 3 from 0 crosses itself`, or the same of several.

@@ -65,6 +65,14 @@ struct Dropped {
   PointBounds flat;  ///< of the corners of those without area, which may have some in double
 };
 
+/// A solid of a text STL file. Its triangles are an object of the scene.
+struct NamedObject {
+  std::string name;
+  std::uint64_t faces = 0;  ///< in the file
+  Object triangles;
+  std::uint32_t first_vertex = 0;  ///< vertices up to the next solid's are its own
+};
+
 /// Vertices of meshes without faces, which are drawn as balls.
 struct Points {
   std::uint64_t count = 0;
@@ -111,6 +119,7 @@ struct SceneFile {
   ColorCounts colors;
   Dropped dropped;
   Points points;
+  std::vector<NamedObject> solids;
   LensHint lens;
   std::string accelerator;    ///< `accel` hint as written, or empty
   int samples_per_pixel = 0;  ///< `spp` hint, 0: none

@@ -112,6 +112,15 @@ class Scene:
         return self._core.colors()
 
     @property
+    def solids(self):
+        """The solids of a text STL file as it was read: a list of (name, faces).
+
+        `faces` is the range of their rows in scene.faces; solid k is mesh k of scene.world. Solids
+        without a facet are left out.
+        """
+        return [(name, range(first, first + count)) for name, first, count in self._core.solids()]
+
+    @property
     def camera(self):
         """A dict of eye, at, up (tuples), angle (degrees), width and height (pixels)."""
         return self._core.camera()

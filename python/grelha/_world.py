@@ -204,7 +204,8 @@ class World:
 
     @property
     def meshes(self):
-        """The number of meshes that of() and add_mesh() were given; 1 in other Worlds."""
+        """The number of meshes that of() and add_mesh() were given, or of the solids of a text STL
+        file; 1 in other Worlds."""
         return self._core.meshes()
 
     def mesh_of(self, ids):
@@ -213,8 +214,8 @@ class World:
         ids   whole numbers, (...); -1 for none
 
         Returns (mesh, face), int64 arrays of shape (...), ints for one id: the number of the mesh
-        among those that of() was given, and the row of its own faces. Both are -1 for -1 and for
-        what is no triangle. Raises ValueError for ids that are none.
+        among those that of() was given or among solids, and the row of its own faces. Both are -1
+        for -1 and for what is no triangle. Raises ValueError for ids that are none.
         """
         return self._core.mesh_of(ids)
 

@@ -153,13 +153,23 @@ FileScene FileScene::without_model(SceneFile& file) {
   apply_effects({}, file, options);
   scene.samples_ = options.sampling.samples;
   scene.view_ = view_of(file);
+  if (file.default_camera)
+    for (const NamedObject& solid : file.solids)
+      scene.solids_.push_back(
+          {solid.name, solid.triangles.first_triangle, solid.triangles.triangle_count});
   return scene;
 }
 
 FileScene FileScene::of(SceneFile file, bool in_double, int threads) {
   FileScene scene = without_model(file);
-  scene.model_ =
-      built({{std::move(file.scene), file.frame.offset}, file.frame.scale, in_double}, threads);
+  ModelParts parts{{std::move(file.scene), file.frame.offset}, file.frame.scale, in_double};
+  if (!scene.solids_.empty()) {
+    for (const NamedObject& solid : file.solids)
+      parts.scene.first_vertices.push_back(solid.first_vertex);
+    parts.scene.first_vertices.push_back(
+        std::uint32_t(parts.scene.geometry.triangles.vertex_count()));
+  }
+  scene.model_ = built(std::move(parts), threads);
   return scene;
 }
 
@@ -242,6 +252,16 @@ py::dict FileScene::camera() const {
   camera["width"] = from.width;
   camera["height"] = from.height;
   return camera;
+}
+
+py::list FileScene::solids() const {
+  py::list all;
+  for (const auto& [name, first, count] : solids_) {
+    const auto text = py::reinterpret_steal<py::object>(
+        PyUnicode_DecodeUTF8(name.data(), py::ssize_t(name.size()), "replace"));
+    all.append(py::make_tuple(text, first, count));
+  }
+  return all;
 }
 
 py::object FileScene::colors() const {

@@ -1,8 +1,10 @@
 #pragma once
 // A scene with camera, lights and materials, from a file or for a bare mesh.
 
+#include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "frontend/input/view.hpp"
 #include "grelha/render_options.hpp"
@@ -33,6 +35,12 @@ struct MeshesArguments {
   py::list materials;
 };
 
+/// Faces of a solid of the file, which is a mesh of the World.
+struct NamedFaces {
+  std::string name;
+  std::uint32_t first = 0, count = 0;
+};
+
 class FileScene {
  public:
   /// Reads a file. Its warnings are Python's.
@@ -55,6 +63,8 @@ class FileScene {
   const SharedModel& model() const { return model_; }
   py::dict camera() const;
   py::array_t<double> lights() const;
+  /// A name, the first face and the number of faces of each solid of the file.
+  py::list solids() const;
   py::object colors() const;  ///< of the vertices (vertices, 3), or None
   /// (h, w, 3), or 4 with alpha.
   py::array_t<float> render(const RenderArguments& given) const;
@@ -70,6 +80,7 @@ class FileScene {
   SharedModel model_;
   View view_;
   int samples_ = 1;
+  std::vector<NamedFaces> solids_;
 };
 
 /// The name of a file, of what Python takes for one.

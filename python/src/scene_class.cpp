@@ -71,6 +71,7 @@ void define_scene(py::module_& into) {
   scene.def("camera", &FileScene::camera);
   scene.def("lights", &FileScene::lights);
   scene.def("colors", &FileScene::colors);
+  scene.def("solids", &FileScene::solids);
   scene.def("camera_rays", [](const FileScene& self, const py::tuple& view) {
     return self.camera_rays(view_in(view));
   });

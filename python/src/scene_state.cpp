@@ -113,16 +113,20 @@ Camera camera_of(const py::tuple& state) {
 
 py::tuple FileScene::state() const {
   const Scene& s = model_->scene();
+  py::list solids;
+  for (const auto& [name, first, count] : solids_)
+    solids.append(py::make_tuple(py::bytes(name), first, count));
   return py::make_tuple(state_of(*model_),
                         floats_of(s.materials, kMaterialFloats),
                         floats_of(view_.lighting.lights, kLightFloats),
                         floats_of(std::vector<Float3>{view_.lighting.background}, 3),
                         tuple_of_camera(view_.camera),
-                        py::make_tuple(view_.made_up_lights, extent_state(view_.extent), samples_));
+                        py::make_tuple(view_.made_up_lights, extent_state(view_.extent), samples_),
+                        solids);
 }
 
 FileScene FileScene::of_state(const py::tuple& state) {
-  if (state.size() != 6)
+  if (state.size() != 7)
     throw py::value_error("state: expected that of a Scene of this version of grelha");
   ModelParts parts = parts_of_state(state[0].cast<py::tuple>());
   parts.scene.materials = things_of<Material>(state[1], kMaterialFloats);
@@ -138,6 +142,11 @@ FileScene FileScene::of_state(const py::tuple& state) {
   scene.samples_ = samples;
   if (scene.samples_ < 1 || scene.samples_ > kMostSamples)
     throw py::value_error("state: expected 1 sample or more");
+  for (const py::handle solid : state[6].cast<py::list>()) {
+    const auto [name, first, count] =
+        solid.cast<std::tuple<py::bytes, std::uint32_t, std::uint32_t>>();
+    scene.solids_.push_back({std::string(name), first, count});
+  }
   scene.model_ = built(std::move(parts), 0);
   return scene;
 }

@@ -98,6 +98,37 @@ class FromAllSides(unittest.TestCase):
                     self.assertEqual(mine.read_bytes(), (folder / "his.pfm").read_bytes(), view)
 
 
+class Solids(unittest.TestCase):
+    def test_solids_are_meshes_with_names(self):
+        rng = np.random.default_rng(3)
+        names = ["lid of a box", "", "caf\u00e9", "x # y"]
+        corners = [rng.integers(-9, 9, (n, 3, 3)) for n in (4, 1, 7, 2)]
+        text = "".join(
+            f"solid {name}\n" + "".join(
+                "facet\nouter loop\n" + "".join("vertex {} {} {}\n".format(*c) for c in facet)
+                + "endloop\nendfacet\n" for facet in facets)
+            + "endsolid\n" for name, facets in zip(names, corners))
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "parts.stl"
+            path.write_text(text, encoding="utf-8")
+            scene = grelha.read(path)
+        self.assertEqual([(name, len(faces)) for name, faces in scene.solids],
+                         [(name, len(facets)) for name, facets in zip(names, corners)])
+        for again in (scene, __import__("pickle").loads(__import__("pickle").dumps(scene))):
+            self.assertEqual(again.solids, scene.solids)
+            self.assertEqual(again.world.meshes, 4)
+            for k, (_, faces) in enumerate(again.solids):
+                np.testing.assert_array_equal(again.vertices[again.faces[faces]], corners[k])
+                mesh, face = again.world.mesh_of(np.array(faces))
+                np.testing.assert_array_equal(mesh, k)
+                np.testing.assert_array_equal(face, np.arange(len(faces)))
+        scene.world.set_visible(0, False)
+        moved = scene.world.vertices[:0]
+        with self.assertRaisesRegex(ValueError, "vertices"):
+            scene.world.update_mesh(1, moved)
+        self.assertEqual(grelha.Scene(CUBE, CUBE_FACES).solids, [])
+
+
 class Meshes(unittest.TestCase):
     def test_colors_of_faces(self):
         vertices, faces = ball(8)

@@ -207,7 +207,8 @@ TEST(Info, JsonSaysWhatTheSceneHolds) {
                                    "needs",
                                    "view",
                                    "made_up",
-                                   "points"}));
+                                   "points",
+                                   "solids"}));
   EXPECT_EQ(json["scene"]["s"], 1);
   EXPECT_EQ(json["kernel"]["spheres"], 1);
   EXPECT_EQ(json["dropped"], Json::parse(R"({"not_finite":3,"zero_area":4})"));

@@ -6,6 +6,7 @@
 
 #include "frontend/files/text.hpp"
 #include "frontend/ply/mesh_file.hpp"
+#include "tests/support/random.hpp"
 #include "tests/support/reading.hpp"
 
 #include <gtest/gtest.h>
@@ -282,6 +283,78 @@ TEST(StlDialects, OfBinary) {
     if (HasFatalFailure() || HasNonfatalFailure())
       return;
   }
+}
+
+using Channels = std::array<int, 3>;
+
+/// sRGB of bytes, as its standard has it.
+float light_of(double byte) {
+  const double c = byte / 255;
+  return float(c <= .04045 ? c / 12.92 : std::pow((c + .055) / 1.055, 2.4));
+}
+
+/// Words of three facets behind a header.
+std::string colored(const std::string& header,
+                    const std::array<std::uint16_t, 3>& words,
+                    bool big_endian = false) {
+  Binary plain{header};
+  plain.big_endian = big_endian;
+  std::string bytes = plain.bytes();
+  for (std::size_t i = 0; i < 3; ++i)
+    bytes.replace(84 + 50 * i + 48, 2, bytes_of(&words[i], 2, big_endian));
+  return bytes;
+}
+
+/// Expects colours in bytes; those of 5 bits may be one byte off before they become light.
+void expect_colors(const std::string& bytes, const std::vector<Channels>& expected) {
+  expect_plain(bytes);
+  const Mesh mesh = read_stl_mesh("m.stl", bytes, nullptr, nullptr, {});
+  ASSERT_EQ(mesh.red.size(), expected.size()) << shown(bytes);
+  for (std::size_t f = 0; f < expected.size(); ++f)
+    for (const auto& [channel, byte] : {std::pair(&mesh.red, expected[f][0]),
+                                        std::pair(&mesh.green, expected[f][1]),
+                                        std::pair(&mesh.blue, expected[f][2])})
+      EXPECT_NEAR((*channel)[f], light_of(byte), .5 / 255 * 3) << shown(bytes) << " face " << f;
+  EXPECT_TRUE(read_stl_mesh("m.stl", bytes, nullptr, nullptr, {}, false).red.empty());
+}
+
+/// Red in the low bits or in the high ones, bit 15 for "valid" or for "as the object", colours of
+/// objects: random words, written by the rules of each program.
+TEST(StlDialects, OfColors) {
+  const std::string color("COLOR=\xFF\x80\x01\xFF", 10);
+  const std::string material =
+      "MATERIAL=" + std::string("\x10\x20\x30\xFF\x01\x02\x03\x04\x05\x06\x07\x08", 12);
+  const Channels object{255, 128, 1}, finer{16, 32, 48}, white{255, 255, 255};
+  const auto words = [](int r, int g, int b) {
+    return std::pair(std::uint16_t(r | g << 5 | b << 10), std::uint16_t(b | g << 5 | r << 10));
+  };
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    Random random(seed);
+    const auto five = [&] { return 1 + int(random.below(30)); };
+    const Channels one{five(), five(), five()}, two{one[1], 31 - one[0], one[2]};
+    const auto [low1, high1] = words(one[0], one[1], one[2]);
+    const auto [low2, high2] = words(two[0], two[1], two[2]);
+    const auto flag = [](std::uint16_t word) { return std::uint16_t(word | 0x8000); };
+    const auto in_bytes = [](Channels c) {
+      for (int& channel : c)
+        channel = int(std::lround(channel * 255. / 31));
+      return c;
+    };
+    const Channels first = in_bytes(one), second = in_bytes(two);
+    for (const bool turned : {false, true})
+      expect_colors(colored("by VisCAM", {flag(high1), high2, flag(high2)}, turned),
+                    {first, white, second});
+    expect_colors(colored("by Magics " + color, {low1, flag(0), low2}), {first, object, second});
+    expect_colors(colored(color + ',' + material, {0x8000, low1, 0xFFFF}), {finer, first, finer});
+    expect_colors(colored(color + ',' + material, {0x8000, 0, 0x8000}), {finer, {0, 0, 0}, finer});
+    expect_colors(colored("by MeshLab " + color, {flag(low1), flag(low2), flag(low1)}),
+                  {first, second, first});
+  }
+  expect_colors(colored(color, {0, 0, 0}), {object, object, object});
+  expect_colors(colored(color, {0xFFFF, 0xFFFF, 0xFFFF}), {object, object, object});
+  expect_colors(colored(material, {0, 0, 0}), {finer, finer, finer});
+  expect_colors(colored("plain", {0, 0x7FFF, 1}), {});
+  expect_colors(colored(std::string(76, ' ') + "COLOR=", {0, 0, 0}), {});
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "frontend/input/read_scene.hpp"
+#include "frontend/input/view.hpp"
 #include "frontend/jobs/identity.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/reading.hpp"
@@ -96,7 +97,8 @@ TEST(Stl, IsThePlyOfItsMesh) {
   const TemporaryFolder folder;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const Shape shape = random_shape(seed);
-    const SceneFile ply = read_scene(folder.add("m.ply", ply_of(shape)), nullptr);
+    SceneFile ply = read_scene(folder.add("m.ply", ply_of(shape)), nullptr);
+    add_default_view(ply, Float3{0, 0, 1});
     for (const std::string& bytes : {text_of(shape),
                                      text_of(shape, "\r\n"),
                                      binary_of(shape),
@@ -213,6 +215,50 @@ TEST(Stl, LoopsAndSolids) {
     line.insert(at + 5, " normal 0 0 1");
   EXPECT_EQ(faces(line), std::pair(3ul, 9ul));
   EXPECT_EQ(faces("solid a\nendsolid a\n"), std::pair(0ul, 0ul));
+}
+
+/// Solids are objects with names and vertices of their own, smooth or not, also where they are read
+/// by a scene; those without a facet are none.
+TEST(Stl, SolidsHaveNames) {
+  const auto facet = [](const std::string& last) {
+    return "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n" + last +
+           "endloop\nendfacet\n";
+  };
+  const std::string plain = facet("vertex 1 1 0\n"), quad = facet("vertex 1 1 0\nvertex 0 1 0\n"),
+                    bad = facet("vertex 1e30 0 0\n");
+  const std::string text = plain + "endsolid\nsolid  lid of a box \n" + quad + plain +
+                           "endsolid lid\nsolid none\nendsolid\nsolid\n" + bad + "endsolid\n" +
+                           "solid \xC3\xA9\n" + plain + facet("vertex 0 0 1\n") + "endsolid";
+  std::string line = text;
+  std::ranges::replace(line, '\n', ' ');
+  const TemporaryFolder folder;
+  for (const std::string& bytes : {text, line})
+    for (const double smooth : {0., 30.})
+      for (const bool in_scene : {false, true}) {
+        std::string path = folder.add("m.stl", bytes);
+        if (in_scene)
+          path = folder.add("s.nff", kView + kFill + "ply m.stl\n");
+        const SceneFile file = read_scene(path, nullptr, {.meshes = {.smooth_deg = smooth}});
+        const Triangles& t = file.scene.geometry.triangles;
+        ASSERT_EQ(file.solids.size(), 4u) << bytes;
+        ASSERT_EQ(file.scene.geometry.objects.size(), 4u);
+        const std::pair<const char*, std::uint64_t> expected[] = {
+            {"", 1}, {"lid of a box", 2}, {"", 1}, {"\xC3\xA9", 2}};
+        const std::uint32_t triangles[] = {1, 3, 0, 2};
+        for (std::size_t k = 0; k < 4; ++k) {
+          const NamedObject& solid = file.solids[k];
+          EXPECT_EQ(std::pair(solid.name, solid.faces),
+                    std::pair(std::string(expected[k].first), expected[k].second));
+          EXPECT_EQ(solid.triangles.triangle_count, triangles[k]);
+          EXPECT_EQ(file.scene.geometry.objects[k].first_triangle, solid.triangles.first_triangle);
+          const std::size_t end = k < 3 ? file.solids[k + 1].first_vertex : t.vertex_count();
+          for (std::uint32_t i = 0; i < triangles[k]; ++i)
+            for (const auto* corner : {&t.a, &t.b, &t.c}) {
+              const std::uint32_t v = (*corner)[solid.triangles.first_triangle + i];
+              EXPECT_TRUE(v >= solid.first_vertex && v < end) << v;
+            }
+        }
+      }
 }
 
 /// By its bytes, whatever it is called; other names are not mistaken.
