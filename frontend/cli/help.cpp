@@ -184,12 +184,12 @@ std::string man_page(const std::vector<CommandHelp>& commands) {
   }
   text +=
       ".SH FILES\n.TP\n.I PREFIX/share/grelha/scenes\nscenes to begin with; PREFIX is /usr for the "
-      "Debian package\n"
-      ".TP\n.I PREFIX/share/doc/grelha\nREADME.md, CHANGELOG.md, farm.sh (one picture by a Slurm "
-      "array), examples of the library\n"
+      "Debian package grelha\n"
+      ".TP\n.I PREFIX/share/doc/grelha\npages, examples and recipes; in Debian the package "
+      "grelha\\-doc\n"
       ".TP\n.I *.grelha\npart of a picture, or what a checkpoint keeps\n"
       ".TP\n.IR NAME .partial.png \", \" NAME .partial.grelha\nwhat a stopped render leaves: the "
-      "picture so far, and what the same command goes on from\n"
+      "unfinished picture, and what the same command goes on from\n"
       ".TP\n.RI . FILE .grelha\\-tmp\na FILE while it is written\n";
   return text +
          ".SH EXIT STATUS\n0; 1 when reading or writing a file fails; 2 for bad usage or a scene "

@@ -72,7 +72,7 @@ struct RenderOptions {
   /// 1, 0: no path ends early. The default moves no channel by more than 1/1024 at depth 5
   /// (docs/sampling.md).
   double min_weight = 1. / 16384;
-  /// largest packet of rays traced together: 1, 16, 64 or 256; see packet_traverse()
+  /// largest packet of rays traced together: 1, 16, 64 or 256
   int packet = 256;
   bool mailbox = true;  ///< do not test a primitive again that was tested in another cell
   std::string_view isa = "best";
