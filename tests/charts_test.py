@@ -30,7 +30,6 @@ try:
     import image_error
     import picture
     import bench
-    from bench import table
 except ImportError as missing:
     print(f"skipped: {missing}")
     sys.exit(77)
@@ -143,13 +142,6 @@ class Kept(unittest.TestCase):
                         self.assertTrue(words and html.escape(words, quote=False) in shown,
                                         f"{drawn['name']}: {words}")
 
-    def test_the_tables_of_the_page_are_of_these_numbers(self):
-        words = (ROOT / "docs/accuracy.md").read_text()
-        for name, module in self.modules.items():
-            self.assertIn(
-                charts.wrapped(module.tell(module.from_csv(bench.read_csv(f"charts-{name}")),
-                                           table)), words, name)
-
 
 class Saved:
     """Takes the place of a benchmark's folder and keeps the figure."""
@@ -174,12 +166,8 @@ def figure_of(name):
                 "matplotlib.pyplot.close") as close:
             module.draw(known, pathlib.Path(folder) / "chart.svg")
         return close.call_args[0][0]
-    rows = {
-        "frame": ["frame-profile"],
-        "report": ["report"]
-    }[name]
-    known = module.from_csv(*map(bench.read_csv, rows))
-    module.draw(saved, *(known if name == "ranks" else [known]))
+    rows = {"frame": "frame-profile", "report": "report"}[name]
+    module.draw(saved, module.from_csv(bench.read_csv(rows)))
     return saved.figure
 
 
@@ -191,7 +179,7 @@ def words_of(figure):
 
 class Benchmarks(unittest.TestCase):
     """The other charts of docs/."""
-    names = ("trace", "build", "frame", "ranks", "report")
+    names = ("trace", "build", "frame", "report")
 
     @classmethod
     def setUpClass(cls):
