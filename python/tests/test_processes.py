@@ -192,8 +192,9 @@ class Threads(unittest.TestCase):
         threads = [threading.Thread(target=ask) for _ in range(3)]
         for thread in threads:
             thread.start()
-        for k in range(200):
-            world.update(CUBE * (1 + k % 2))
+        for k in range(400):  # by a copy, and in place where no thread asks
+            vertices = CUBE * (1 + k % 2)
+            world.update(vertices) if k < 200 else world.update_mesh(0, vertices)
         stop.set()
         for thread in threads:
             thread.join()
