@@ -95,7 +95,7 @@ void add_view(CLI::App& app, ViewOptions& view) {
   };
   place("--eye", "where the camera is [as the scene says; info prints it]", view.eye);
   place("--at", "the point it looks at", view.at);
-  add("--up", "X,Y,Z", "what is up, also z, +z, -x; alone: frames a mesh anew", [&](Text t) {
+  add("--up", "X,Y,Z", "what is up, also z or +Z; alone: frames a mesh anew", [&](Text t) {
     view.up = direction("--up", t);
   });
   add("--angle", "DEG", "vertical field of view", [&](Text t) { view.angle_deg = angle(t); });

@@ -179,12 +179,9 @@ TEST_F(Program, TakesFoldersAndSeveralScenes) {
 /// A picture of nothing has one warning and is made; with --strict it is not.
 TEST_F(Program, StrictTakesWarningsForErrors) {
   const std::string start = std::string(kBall).substr(0, std::string(kBall).find("s 0"));
-  folder_.write("cloud.ply",
-                "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float "
-                "y\nproperty float z\n"
-                "end_header\n0 0 0\n1 1 1\n");
+  folder_.write("empty.ply", "ply\nformat ascii 1.0\nend_header\n");
   folder_.write("word.nff", start + "sphere 0 0 0 1\n");
-  for (const char* name : {"cloud.ply", "word.nff"}) {
+  for (const char* name : {"empty.ply", "word.nff"}) {
     for (const std::string& command :
          {std::string("render -o x.png --quiet "), std::string("info ")}) {
       std::filesystem::remove(folder_.file("x.png"));
@@ -198,7 +195,7 @@ TEST_F(Program, StrictTakesWarningsForErrors) {
           << strict.err;
     }
   }
-  EXPECT_EQ(run("render -o x.png --quiet --strict cloud.ply").status, 2);
+  EXPECT_EQ(run("render -o x.png --quiet --strict empty.ply").status, 2);
   EXPECT_FALSE(std::filesystem::exists(folder_.file("x.png")));
   EXPECT_EQ(run("render -o x.png --quiet --strict ball.nff").status, 0);
 }
