@@ -284,8 +284,11 @@ std::array<double, 3> point(const std::string& option, const std::string& text) 
 std::array<double, 3> direction(const std::string& option, const std::string& text) {
   const bool has_sign = text.starts_with('+') || text.starts_with('-');
   const std::string axis = in_small_letters(text.substr(has_sign ? 1 : 0));
-  if (axis != "x" && axis != "y" && axis != "z")
+  if (axis != "x" && axis != "y" && axis != "z") {
+    if (text.find(',') == text.npos)
+      reject(option, "X,Y,Z, or an axis such as z or -y", text);
     return point(option, text);
+  }
   std::array<double, 3> found{};
   found[std::size_t(axis[0] - 'x')] = text[0] == '-' ? -1 : 1;
   return found;

@@ -73,6 +73,15 @@ SceneFile stl_of(const Triangles& t) {
   return read_scene(folder.add("box.stl", text + "endsolid\n"), nullptr);
 }
 
+/// The vertices alone.
+SceneFile points_of(const Triangles& t) {
+  SceneFile file;
+  for (std::size_t v = 0; v < t.vertex_count(); ++v)
+    file.scene.geometry.spheres.add({t.x[v], t.y[v], t.z[v]}, .01f, 0);
+  add_default_view(file);
+  return file;
+}
+
 Image picture(const SceneFile& file, int side) {
   Camera camera = file.camera;
   camera.width = camera.height = side;
@@ -171,7 +180,7 @@ TEST(DefaultView, AMeshStandsOnItsFeet) {
 }
 
 /// Twelve first pictures by what is up and which side the eye is on: boxes by their size, as PLY
-/// and as STL, whose y side carries a sign.
+/// and points, or as STL.
 TEST(DefaultView, StandsUprightAndShowsItsFront) {
   const Float3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1}, front_z{0, 0, 1}, front_y{0, -1, 0};
   struct Case {
@@ -195,15 +204,16 @@ TEST(DefaultView, StandsUprightAndShowsItsFront) {
       {"rod", {.1f, 5, .1f}, false, y, front_z},
   };
   for (const auto& [name, size, stl, up, front] : cases) {
-    SceneFile file = box(size);
-    if (stl)
-      file = stl_of(file.scene.geometry.triangles);
-    const Camera& c = file.camera;
-    EXPECT_EQ(c.up, up) << name;
-    const Float3 back = c.eye - c.at;
-    EXPECT_GT(dot(back, front), .6 * std::sqrt(dot(back, back))) << name;
-    EXPECT_GT(dot(back, up), .3 * std::sqrt(dot(back, back))) << name << " from above";
-    EXPECT_GT(dot(cross(up, front), back), 0) << name << " from its right";
+    const SceneFile mesh = box(size);
+    const Triangles& t = mesh.scene.geometry.triangles;
+    for (const SceneFile& file : {stl ? stl_of(t) : mesh, stl ? stl_of(t) : points_of(t)}) {
+      const Camera& c = file.camera;
+      EXPECT_EQ(c.up, up) << name;
+      const Float3 back = c.eye - c.at;
+      EXPECT_GT(dot(back, front), .6 * std::sqrt(dot(back, back))) << name;
+      EXPECT_GT(dot(back, up), .3 * std::sqrt(dot(back, back))) << name << " from above";
+      EXPECT_GT(dot(cross(up, front), back), 0) << name << " from its right";
+    }
   }
 }
 

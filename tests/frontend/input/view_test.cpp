@@ -395,7 +395,7 @@ TEST(ViewOptions, ThatCannotBeAreRefused) {
   EXPECT_EQ(error("--orbit 1e9,2"), "--orbit: expected degrees, at most 100 turns, found \"1e9\"");
   EXPECT_EQ(error("--orthographic 0"),
             "--orthographic: expected auto, or a height above 0 and up to 1e18, found \"0\"");
-  EXPECT_EQ(error("--up zz"), "--up: expected X,Y,Z, found \"zz\"");
+  EXPECT_EQ(error("--up zz"), "--up: expected X,Y,Z, or an axis such as z or -y, found \"zz\"");
   EXPECT_EQ(error("--at 1e18,-1e18,0 --orthographic 1e18 --points 1e18 --shadows random:1e18"),
             "no error");
   EXPECT_EQ(error("--background 1,2"),
