@@ -1,6 +1,7 @@
 #!/bin/sh
 # release.sh FOLDER: the files of a release and their checksums, in FOLDER: sources, packages of
-# Debian, and grelha-rays for pip. HEAD must be tagged as the version, without changes after it.
+# Debian, and for pip an sdist and a wheel without pictures, which needs no library but those of
+# the compiler. HEAD must be tagged as the version, without changes after it.
 set -eu
 cd "$(dirname "$0")/.."
 out=$1
@@ -18,9 +19,16 @@ rm -rf "$out"
 mkdir -p "$out"
 git archive --prefix="grelha-$version/" -o "$out/grelha-$version.tar.gz" HEAD
 cmake/deb.sh "$out"
-GRELHA_RAYS=1 /usr/bin/python3 setup.py -q sdist -d "$out"
-GRELHA_RAYS=1 /usr/bin/python3 -m pip wheel -q --no-build-isolation --no-index --no-deps -w "$out" .
+/usr/bin/python3 setup.py -q sdist -d "$out/python"
+SKBUILD_CONFIGURE_OPTIONS=-DGRELHA_FRONTEND=OFF /usr/bin/python3 -m pip wheel -q \
+  --no-build-isolation --no-index --no-deps -w "$out/python" .
+if command -v auditwheel >/dev/null; then
+  auditwheel repair -w "$out/python" "$out"/python/grelha-*-linux_*.whl
+  rm "$out"/python/grelha-*-linux_*.whl
+else
+  echo "release: no auditwheel: PyPI takes no wheel that is tagged linux_*"
+fi
 cd "$out"
 rm -f ./*.buildinfo ./*.changes
-sha256sum ./*.deb ./*.tar.gz ./*.whl >SHA256SUMS
+sha256sum ./*.deb ./*.tar.gz python/* >SHA256SUMS
 ls "$PWD"

@@ -6,7 +6,7 @@
 #   packages   installs those of build/packages; runs the program, man page, README, recipes, and
 #              the examples against the library; pictures are left in FOLDER/tmp
 #   arm64      packages for ARM, cross-built, and unpacked where qemu-user runs program and module
-#   wheel      pip install ., and grelha-rays, with Debian's packages for building; what it is
+#   wheel      pip install ., also without pictures, with Debian's packages for building; what it is
 #              linked with
 set -eu
 what=$1 root=$2
@@ -102,9 +102,9 @@ apt-get update -qq
 apt-get install -y -qq --no-install-recommends g++ cmake ninja-build libxsimd-dev python3-pip \
   python3-dev python3-numpy python3-skbuild python3-pybind11 pybind11-dev binutils unzip
 cd grelha
-GRELHA_RAYS=1 python3 -m pip wheel -q --no-build-isolation --no-index --no-deps -w /tmp/wheels .
+python3 -m pip wheel -q --no-build-isolation --no-index --no-deps -w /tmp/wheels .
 cd /tmp/wheels
-python3 -m zipfile -e grelha_rays-*.whl rays
+python3 -m zipfile -e grelha-*.whl rays
 objdump -p rays/grelha/_grelha*.so | grep NEEDED
 PYTHONPATH=rays python3 -c 'import grelha
 world = grelha.World([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])

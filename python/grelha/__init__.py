@@ -23,5 +23,6 @@ if hasattr(_grelha, "SceneCore"):
         globals()[_name].__module__ = "grelha"
 else:
     def __getattr__(name):
-        rays = " of grelha-rays, which has no pictures" if name in _OF_PICTURES else ""
-        raise AttributeError(f"module {__name__!r}{rays} has no attribute {name!r}")
+        lacks = (": it was built without OpenEXR or another library of pictures (docs/python.md)"
+                 if name in _OF_PICTURES else "")
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}{lacks}")
