@@ -30,7 +30,7 @@ grelha_tests(kernel/isa PROPERTY variants kinds LIBRARIES grelha::kernel)
 grelha_tests(kernel/shade UNIT shade bounces path_weight
   PROPERTY sampling pixel_box pixel_curve LIBRARIES grelha::kernel grelha_lane_functions)
 grelha_tests(kernel/picture IMAGE subdivision adaptive determinism fork refinement target_rays
-  error_check block_errors specks LIBRARIES grelha::frontend grelha::scenes)
+  round_plan block_errors specks LIBRARIES grelha::frontend grelha::scenes)
 
 # The kernel refuses arithmetic that rounds only when it stores, as x87 does.
 add_test(NAME refuses_x87 COMMAND ${CMAKE_CXX_COMPILER} -std=c++20 -fsyntax-only -w -x c++

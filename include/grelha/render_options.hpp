@@ -42,8 +42,12 @@ struct SampleOptions {
   int glossy_rays = 0;
 };
 
+/// Least value of RefineOptions::most: every pixel begins with as many samples.
+inline constexpr int kLeastMost = 8;
+
 /// Adaptive sampling: samples go to the pixels where they reduce the error most, instead of
-/// SampleOptions::samples to each. The sampler must be kSobol or kRandom.
+/// SampleOptions::samples to each, until the first of the limits is reached. The sampler must be
+/// kSobol or kRandom.
 struct RefineOptions {
   /// > 0: samples until the RMSE is at most this, at 95 % confidence. Display units, 0 to 1
   double error = 0;
@@ -52,7 +56,13 @@ struct RefineOptions {
   double seconds = 0;
   /// > 0: number of samples of the whole picture; every pixel gets at least the first few
   std::uint64_t samples = 0;
-  /// Returns true if any of the three limits is set.
+  /// > 0: at most this many samples of a pixel, from kLeastMost on, beside one of the limits above.
+  /// Samples are doubled, so the largest power of two counts
+  int most = 0;
+  /// keep in the Picture what a finer error, or another limit, goes on from: see
+  /// Picture::lift_limits(). Twice the memory
+  bool refinable = false;
+  /// Returns true if any of the first three limits is set.
   bool on() const { return error > 0 || seconds > 0 || samples > 0; }
 };
 

@@ -65,19 +65,23 @@ struct TraceCounts {
   }
 };
 
+/// What ended a picture rendered with RefineOptions: kNone if nothing did, or no sample differed.
+enum class Limit { kNone, kError, kSamples, kSeconds };
+
 /// Estimated error of a picture rendered with RefineOptions; display units, 0 to 1.
 struct ErrorStats {
   /// estimated RMSE of all pixels and channels against the converged picture
   double rmse = 0;
   double rmse_bound = 0;  ///< upper bound of rmse at 95 % confidence
   bool met = false;       ///< the requested RMSE is reached
-  /// number of second, independent sets of samples of some pixels, each of other pixels; their
-  /// differences from the picture correct rmse
+  Limit ended = Limit::kNone;
+  /// number of error checks: each doubles the samples of blocks drawn at random, and what these
+  /// differ from the samples before corrects rmse
   int checks = 0;
-  std::uint64_t check_samples = 0;    ///< samples of these sets; the picture does not contain them
+  std::uint64_t check_samples = 0;    ///< that checks took, among `samples`
   std::uint64_t samples = 0;          ///< of all pixels; see RefineOptions::seconds
   std::uint32_t least = 0, most = 0;  ///< samples of a single pixel
-  int rounds = 0;                     ///< of doubling the samples
+  int rounds = 0;                     ///< of adding samples, without checks
 };
 
 /// Seconds per Phase, summed over all threads.

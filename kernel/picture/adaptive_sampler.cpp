@@ -21,6 +21,12 @@
 namespace grelha {
 namespace {
 
+/// Most that is told of a picture in work: a forecast may be too low.
+constexpr double kMostForecast = .99;
+/// Share that the first samples are taken to be before anything is known: half of a coarse
+/// picture, less the finer the error.
+constexpr double kFirstShare = .5, kErrorOfAll = 20;
+
 using Spaces = std::vector<std::unique_ptr<Workspace>>;
 
 /// A workspace a thread, for a chunk of runs.
@@ -60,21 +66,15 @@ class AdaptiveSampler {
 
   void run() {
     reserve_to_fill(r_.wanted, order_.size());
-    if (r_.wanted.empty() && !r_.finished)
-      r_.wanted = order_;
     errors_.estimate();
-    while (!r_.finished && (!progress_.stopped() || resume())) {
-      if (!take_round())
-        continue;
-      if (r_.rounds++ == 0)
-        trace_targets();
-      errors_.estimate();
-      if (options_.refine.error > 0 && is_check_due()) {
-        check();
+    if (r_.wanted.empty() && !r_.finished)
+      r_.finished = !plan();
+    while (!r_.finished && (!progress_.stopped() || resume()))
+      if (take_round()) {
+        close();
         errors_.estimate();
+        r_.finished = !plan();
       }
-      r_.finished = !choose_round(r_, errors_, options_.refine, order_, {samples_, seconds()});
-    }
     if (r_.finished)
       r_.share = 1;
     r_.seconds = seconds();
@@ -88,7 +88,8 @@ class AdaptiveSampler {
     ErrorStats& e = stats_.error;
     e.rmse = totals.rmse;
     e.rmse_bound = stated(totals.bound);
-    e.met = options_.refine.error > 0 && totals.judged(r_.checks > 0) <= options_.refine.error;
+    e.met = r_.finished && r_.limit == Limit::kError;
+    e.ended = r_.finished ? r_.limit : Limit::kNone;
     e.checks = r_.checks;
     e.check_samples = r_.check_samples;
     e.rounds = r_.rounds;
@@ -103,12 +104,28 @@ class AdaptiveSampler {
   }
 
  private:
-  /// Targets objects that samples may miss, unless all such objects together could not matter.
-  void trace_targets() {
-    const double error = options_.refine.error, pixels = static_cast<double>(r_.box.size());
-    if (std::min(static_cast<double>(object_count(world_)), pixels) <= error * error * pixels)
-      return;
-    target_small_objects(world_, setup_, stats_.threads, r_, stats_.trace);
+  /// Wants the blocks of what comes next: the first samples, a check, or a round. Returns false if
+  /// nothing does.
+  bool plan() {
+    if (samples_ == 0) {
+      r_.wanted = order_;
+      return true;
+    }
+    const RefineOptions& asked = options_.refine;
+    r_.seconds = seconds();
+    const Spent spent{samples_, r_.seconds};
+    return (is_check_due(r_, errors_, asked, samples_) &&
+            plan_check(r_, errors_, asked, order_, spent, setup_.plan.seed)) ||
+           plan_round(r_, errors_, asked, order_, spent);
+  }
+
+  /// Takes what a check or a round told.
+  void close() {
+    if (!r_.checking.empty())
+      close_check(r_, samples_);
+    else if (r_.rounds++ == 0)
+      target_small_objects(world_, setup_, stats_.threads, r_, stats_.trace);
+    close_round(r_);
   }
 
   /// The bound as reported to the caller. Runs stop where their bound happens to be low; the error
@@ -125,24 +142,6 @@ class AdaptiveSampler {
         maps.samples[p] = sample_count(r_, b);
         maps.error[p] = std::sqrt(errors_.variance(b));
       });
-  }
-
-  /// True when the error asked for seems to be met, and no check says so that is recent.
-  bool is_check_due() const {
-    const bool recent = r_.checks > 0 && static_cast<double>(samples_) <
-                                             kCheckGrowth * static_cast<double>(r_.checked_at);
-    return r_.checks < kMaxChecks && !recent &&
-           errors_.totals().judged(r_.checks > 0) <= options_.refine.error;
-  }
-
-  /// Checks the picture's error. Sums of earlier checks count for half.
-  void check() {
-    const RayCounts before = stats_.rays;
-    r_.checked = .5 * r_.checked + check_error(world_, setup_, options_, errors_, r_, stats_);
-    ++r_.checks;
-    r_.checked_at = samples_;
-    r_.rays += stats_.rays.total() - before.total();
-    r_.check_samples += stats_.rays.primary - before.primary;
   }
 
   bool resume() {
@@ -169,8 +168,9 @@ class AdaptiveSampler {
         const std::size_t c = begun++;
         if (c >= chunks.size())
           break;
+        const RayCounts before = rays;
         take_chunk(chunks[c], space, trace, rays);
-        report_progress();
+        report_progress(rays.total() - before.total(), rays.primary - before.primary);
       }
       collect(trace, rays);
     }
@@ -183,19 +183,30 @@ class AdaptiveSampler {
     {
       stats_.trace += trace;
       stats_.rays += rays;
-      r_.rays += rays.total();
-      samples_ += rays.primary;
     }
   }
 
-  void report_progress() {
+  /// Counts rays and samples that were taken, and tells how far the picture is.
+  void report_progress(std::uint64_t rays, std::uint64_t samples) {
 #pragma omp critical(grelha_progress)
     {
-      if (options_.refine.seconds > 0)
-        r_.share = std::min(1.0, seconds() / options_.refine.seconds);
+      r_.rays += rays;
+      samples_ += samples;
+      r_.share = std::max(r_.share, std::min(share_now(), kMostForecast));
       if (!progress_.stopped())
         progress_.report(r_.share);
     }
+  }
+
+  double share_now() const {
+    const RefineOptions& asked = options_.refine;
+    const double timed = asked.seconds > 0 ? seconds() / asked.seconds : 0;
+    if (r_.forecast > 0)
+      return std::max(timed, static_cast<double>(r_.rays) / r_.forecast);
+    const auto first = static_cast<double>(r_.box.size() << kFirstLog);
+    const double all = asked.error > 0 ? first / std::min(kFirstShare, asked.error * kErrorOfAll)
+                                       : static_cast<double>(asked.samples);
+    return std::max(timed, all > 0 ? static_cast<double>(samples_) / all : 0);
   }
 
   /// The next samples of each pixel of a chunk; the space gets their names and boxes, sum by sum.
@@ -205,8 +216,13 @@ class AdaptiveSampler {
       const std::uint32_t b = r_.wanted[w];
       blocks_.each_pixel(b, [&](std::size_t p) {
         const auto pixel = static_cast<std::uint32_t>(p);
-        name_sums(count, pixel, space);
-        runs[count++] = {pixel, sample_count(r_, b), next_count(r_, b)};
+        std::uint32_t first = sample_count(r_, b);
+        for (int k = doublings(r_, b); k > 0; --k) {
+          const std::uint32_t more = first == 0 ? 1u << kFirstLog : first;
+          name_sums(count, pixel, space);
+          runs[count++] = {pixel, first, more};
+          first += more;
+        }
       });
     }
     return count;
@@ -236,7 +252,7 @@ class AdaptiveSampler {
       const std::uint32_t b = r_.wanted[w];
       r_.cost[b] = cost;
       r_.missed[b] = 0;
-      r_.log[b] = static_cast<std::uint8_t>(r_.log[b] == 0 ? kFirstLog : r_.log[b] + 1);
+      r_.log[b] = r_.goal[b];
     }
   }
 

@@ -31,13 +31,6 @@ BlockErrors::BlockErrors(const Refinement& r, int threads)
   resize_to_fill(sums_, count);
   for (std::vector<float>* const of : {&claim_, &variance_, &certainty_, &gain_})
     resize_to_fill(*of, count);
-  int columns = blocks_.columns, rows = blocks_.rows;
-  for (Level& level : levels_) {
-    level = {columns, rows, {}};
-    resize_to_fill(level.cells, static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
-    columns = (columns + kCell - 1) / kCell;
-    rows = (rows + kCell - 1) / kCell;
-  }
 }
 
 /// Adds pixel p, of 2^log samples.
@@ -80,18 +73,6 @@ void BlockErrors::measure(std::size_t b) {
   });
   sums_[b] = sums;
   version_[b] = r_.log[b];
-  levels_[0].cells[b] = sums.has_few_hits() ? sums : Sums{};
-}
-
-/// Sums up the level below.
-void BlockErrors::fill_level(int l) {
-  Level& level = levels_[l];
-  const Level& below = levels_[l - 1];
-  std::fill(level.cells.begin(), level.cells.end(), Sums{});
-  for (int y = 0; y < below.rows; ++y)
-    for (int x = 0; x < below.columns; ++x)
-      level.cells[static_cast<std::size_t>(y / kCell * level.columns + x / kCell)] +=
-          below.cells[static_cast<std::size_t>(y * below.columns + x)];
 }
 
 /// Variance by sums of squared differences over degrees of freedom.
@@ -105,50 +86,35 @@ bool BlockErrors::agrees(std::size_t b) const {
   return own_variance(sums_[b].levels) <= kAgreement / (n * n);
 }
 
-/// Adds to a pool the cells around (x, y), and that cell, that may show one surface with a block:
-/// means differ by no more than chance explains if samples hit as often as in the cell with most
-/// hits.
-void BlockErrors::pool_around(
-    const Level& level, int x, int y, const Sums& mine, Sums& pool) const {
-  const auto each = [&](const auto& visit) {
-    for (int j = std::max(y - 1, 0); j <= std::min(y + 1, level.rows - 1); ++j)
-      for (int i = std::max(x - 1, 0); i <= std::min(x + 1, level.columns - 1); ++i)
-        visit(level.cells[static_cast<std::size_t>(j * level.columns + i)]);
-  };
-  float by_sample = mine.by_sample();
-  each([&](const Sums& cell) { by_sample = std::max(by_sample, cell.by_sample()); });
-  if (!(by_sample > 0))
-    return;
-  each([&](const Sums& cell) {
-    if (!(cell.pixels > 0))
-      return;
-    float difference = 0;
-    for (int c = 0; c < 3; ++c) {
-      const float d = mine.colour[c] / mine.pixels - cell.colour[c] / cell.pixels;
-      difference += d * d;
-    }
-    const float chance = by_sample * (1 / mine.samples + 1 / cell.samples);
-    if (difference <= 3 * kAlike * kAlike * chance)
-      pool += cell;
-  });
-}
-
-/// Sums of a block with few hits and of as few surrounding blocks as give enough certainty.
+/// Sums of a block with few hits and of the blocks around it that have few and may show the same
+/// surface: means differ by no more than chance explains if samples hit as often as in the block
+/// with most hits.
 BlockErrors::Sums BlockErrors::pool_of(std::size_t b) const {
   const Sums& mine = sums_[b];
   const auto columns = static_cast<std::size_t>(blocks_.columns);
-  int x = static_cast<int>(b % columns), y = static_cast<int>(b / columns);
-  Sums pool = mine;
-  for (const Level& level : levels_) {
-    Sums around{};
-    pool_around(level, x, y, mine, around);
-    if (around.pixels > pool.pixels)
-      pool = around;
-    if (pool.certainty() >= kEnoughHits)
-      break;
-    x /= kCell;
-    y /= kCell;
-  }
+  const int x = static_cast<int>(b % columns), y = static_cast<int>(b / columns);
+  const auto each = [&](const auto& visit) {
+    for (int j = std::max(y - 1, 0); j <= std::min(y + 1, blocks_.rows - 1); ++j)
+      for (int i = std::max(x - 1, 0); i <= std::min(x + 1, blocks_.columns - 1); ++i) {
+        const Sums& s = sums_[static_cast<std::size_t>(j) * columns + static_cast<std::size_t>(i)];
+        if (s.has_few_hits())
+          visit(s);
+      }
+  };
+  float by_sample = 0;
+  each([&](const Sums& s) { by_sample = std::max(by_sample, s.by_sample()); });
+  if (!(by_sample > 0))
+    return mine;
+  Sums pool{};
+  each([&](const Sums& s) {
+    float difference = 0;
+    for (int c = 0; c < 3; ++c) {
+      const float d = mine.colour[c] / mine.pixels - s.colour[c] / s.pixels;
+      difference += d * d;
+    }
+    if (difference <= 3 * kAlike * kAlike * by_sample * (1 / mine.samples + 1 / s.samples))
+      pool += s;
+  });
   return pool;
 }
 
@@ -195,8 +161,6 @@ void BlockErrors::estimate() {
   for (std::size_t b = 0; b < blocks_.count(); ++b)
     if (version_[b] != r_.log[b])
       measure(b);
-  for (int l = 1; l < kLevels; ++l)
-    fill_level(l);
 #pragma omp parallel for num_threads(threads_) schedule(static)
   for (std::size_t b = 0; b < blocks_.count(); ++b)
     estimate_block(b);

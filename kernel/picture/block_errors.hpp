@@ -53,19 +53,10 @@ class BlockErrors {
     float by_sample() const { return pixels > 0 ? hits / pixels : 0; }
     float ratio() const;
   };
-  /// Sums of blocks of rare hits, in cells of kCell x kCell cells of the level before.
-  struct Level {
-    int columns, rows;
-    std::vector<Sums> cells;
-  };
-  static constexpr int kLevels = 3, kCell = 4;
-
   void measure(std::size_t b);
   void measure_pixel(std::size_t p, int log, Sums& sums) const;
-  void fill_level(int l);
   float freedom(int log) const { return log == kFirstLog ? kYoung : kOld; }
   float own_variance(const float (&levels)[3]) const;
-  void pool_around(const Level& level, int x, int y, const Sums& mine, Sums& pool) const;
   Sums pool_of(std::size_t b) const;
   float rare_variance(std::size_t b, float& certainty) const;
   float gain_of(std::size_t b, float variance) const;
@@ -75,9 +66,8 @@ class BlockErrors {
   const Refinement& r_;
   const Blocks blocks_;
   const int threads_;
-  std::vector<std::uint8_t> version_;  ///< [blocks] Refinement::log when `sums_` was set
-  std::vector<Sums> sums_;             ///< [blocks]
-  Level levels_[kLevels];
+  std::vector<std::uint8_t> version_;           ///< [blocks] Refinement::log when `sums_` was set
+  std::vector<Sums> sums_;                      ///< [blocks]
   std::vector<float> claim_, variance_, gain_;  ///< [blocks]
   std::vector<float> certainty_;                ///< [blocks] of how many hits
 };

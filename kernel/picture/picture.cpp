@@ -166,6 +166,11 @@ bool Picture::advance(const World& world,
   return done;
 }
 
+bool Picture::lift_limits() {
+  Refinement* const r = std::get_if<Refinement>(&state_);
+  return r && grelha::lift_limits(*r);
+}
+
 int Picture::width() const {
   return std::visit([](const auto& state) { return width_of(state); }, state_);
 }

@@ -53,26 +53,51 @@ void visit_arrays(Archive& archive, State& a) {
 template <class Archive, class State>
 requires std::is_same_v<std::remove_const_t<State>, Refinement>
 void visit_numbers(Archive& archive, State& r) {
-  archive.numbers(kKindOf<Refinement>, r.width, r.height, r.rounds, r.checks, r.last, r.finished);
+  int limit = static_cast<int>(r.limit);
+  bool keeps = !r.before.empty();
+  archive.numbers(kKindOf<Refinement>, r.width, r.height, r.rounds, r.checks, r.repeats);
+  archive.numbers("limits", limit, r.limited, r.finished, keeps);
+  if constexpr (!std::is_const_v<State>) {
+    r.limit = static_cast<Limit>(limit);
+    r.before.resize(keeps);
+  }
 }
 
+/// All of a picture by error but its size.
 template <class Archive, class State>
-requires std::is_same_v<std::remove_const_t<State>, Refinement>
-void visit_arrays(Archive& archive, State& r) {
-  const std::size_t pixels = pixels_of(r.width, r.height);
+void visit_samples(Archive& archive, State& r) {
+  const std::size_t pixels = pixels_of(r.width, r.height), blocks = r.blocks().count();
   archive.values(r.variance_drop, r.variance_level, r.round_drop, r.round_level);
   auto& c = r.checked;
   archive.values(c.y, c.x, c.yy, c.xy, c.xx, c.ny, c.nyny, c.count, r.checked_at, r.check_samples);
-  archive.values(r.seconds, r.share, r.rays, r.variance_ratio, r.gain_threshold);
-  archive.list(r.log, r.blocks().count());
-  archive.list(r.missed, r.blocks().count());
-  archive.list(r.cost, r.blocks().count());
+  archive.values(r.seconds, r.share, r.rays, r.forecast, r.variance_ratio);
+  archive.list(r.log, blocks);
+  archive.list(r.goal, blocks);
+  archive.list(r.missed, blocks);
+  archive.list(r.cost, blocks);
   archive.list(r.sums, pixels * 3);
   for (auto& level : r.squares)
     archive.list(level, pixels * 3);
   archive.list(r.box, pixels);
   archive.size(r.wanted, sizeof r.wanted[0]);
   archive.list(r.wanted, r.wanted.size());
+  archive.size(r.checking, sizeof r.checking[0]);
+  for (auto& b : r.checking)
+    archive.values(b.block, b.claim, b.stands_for);
+}
+
+template <class Archive, class State>
+requires std::is_same_v<std::remove_const_t<State>, Refinement>
+void visit_arrays(Archive& archive, State& r) {
+  visit_samples(archive, r);
+  for (auto& before : r.before) {
+    if constexpr (!std::is_const_v<State>) {
+      before.width = r.width;
+      before.height = r.height;
+    }
+    archive.values(before.rounds);
+    visit_samples(archive, before);
+  }
 }
 
 template <class Archive, class State>
@@ -118,6 +143,12 @@ class Picture {
                RenderStats& stats,
                SampleMaps* maps = nullptr,
                const ShouldContinue& should_continue = {});
+
+  /// Goes back to what a picture by error was before its limits changed it, so that advance() goes
+  /// on from there with others, to the bits of a picture that had those from the beginning. Without
+  /// RefineOptions::refinable that works until they change it. Returns false if it does not work,
+  /// or the picture is none by error.
+  bool lift_limits();
 
   int width() const;   ///< pixels, of the whole picture
   int height() const;  ///< the same

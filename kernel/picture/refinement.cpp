@@ -18,16 +18,37 @@ bool lies(T value, T least, T most) {
   return value >= least && value <= most;  // NaN does not
 }
 
-/// True if r.wanted lists blocks that can take more samples, each once: threads work on all blocks
-/// of a round at the same time.
-bool is_round(const Refinement& r) {
-  std::vector<bool> there(r.log.size());
-  for (const std::uint32_t b : r.wanted) {
-    if (b >= there.size() || there[b] || r.log[b] >= kMostLog)
+/// True if blocks are there, each once: threads work on all blocks of a round at the same time.
+template <class Blocks>
+bool are_distinct(const Blocks& blocks, std::size_t count) {
+  std::vector<bool> there(count);
+  for (const std::uint32_t b : blocks) {
+    if (b >= count || there[b])
       return false;
     there[b] = true;
   }
   return true;
+}
+
+/// True if r.wanted lists blocks that can be doubled as often as their goals say.
+bool is_round(const Refinement& r) {
+  return are_distinct(r.wanted, r.log.size()) &&
+         std::all_of(r.wanted.begin(), r.wanted.end(), [&](std::uint32_t b) {
+           return r.goal[b] <= kMostLog &&
+                  (r.log[b] == 0 ? r.goal[b] == kFirstLog
+                                 : lies(r.goal[b] - r.log[b], 1, kMostDoublings));
+         });
+}
+
+/// True if the blocks of a check have samples, or nothing is checked.
+bool is_check(const Refinement& r) {
+  std::vector<std::uint32_t> blocks;
+  for (const CheckedBlock& c : r.checking)
+    blocks.push_back(c.block);
+  return are_distinct(blocks, r.log.size()) &&
+         std::all_of(r.checking.begin(), r.checking.end(), [&](const CheckedBlock& c) {
+           return r.log[c.block] > 0 && lies(c.claim, 0.f, 1e30f) && lies(c.stands_for, 0.f, 1e9f);
+         });
 }
 
 bool is_new(const Refinement& r) {
@@ -44,8 +65,10 @@ bool has_valid_numbers(const Refinement& r) {
   for (const double v : {c.y, c.x, c.yy, c.xy, c.xx, c.ny, c.nyny, c.count})
     if (!lies(v, 0.0, kMost))
       return false;
-  return lies(r.variance_ratio, .1f, .6f) && lies(r.gain_threshold, 0.f, .25f) &&
-         lies(r.share, 0.0, 1.0) && lies(r.rounds, 0, 1 << 20) && lies(r.checks, 0, 1 << 20);
+  return lies(r.limit, Limit::kNone, Limit::kSeconds) && lies(r.variance_ratio, .1f, .6f) &&
+         lies(r.share, 0.0, 1.0) && lies(r.forecast, 0.0, kMost) &&
+         lies(r.repeats, 0, kMostRepeats) && lies(r.rounds, 0, 1 << 20) &&
+         lies(r.checks, 0, 1 << 20);
 }
 
 std::size_t pixel_count(const Refinement& r) {
@@ -67,7 +90,7 @@ bool has_valid_sizes(const Refinement& r) {
     if (level.size() != pixels * 3)
       return false;
   return r.sums.size() == pixels * 3 && r.box.size() == pixels && r.log.size() == blocks &&
-         r.missed.size() == blocks && r.cost.size() == blocks;
+         r.goal.size() == blocks && r.missed.size() == blocks && r.cost.size() == blocks;
 }
 
 /// Its sides are in order; see packed().
@@ -86,6 +109,13 @@ bool has_valid_arrays(const Refinement& r) {
          std::all_of(r.box.begin(), r.box.end(), is_valid_box) && all_from_0_on(r.missed) &&
          all_from_0_on(r.cost) &&
          std::all_of(r.cost.begin(), r.cost.end(), [](float c) { return c >= 1; });
+}
+
+/// True if what the picture was before is another of its size, between rounds.
+bool is_before(const Refinement& r) {
+  return r.before.empty() ||
+         (r.before.size() == 1 && r.before[0].width == r.width && r.before[0].height == r.height &&
+          r.before[0].before.empty() && r.before[0].wanted.empty() && is_valid(r.before[0]));
 }
 
 }  // namespace
@@ -128,15 +158,28 @@ Refinement make_refinement(const Camera& camera) {
   resize_to_fill(r.missed, blocks);
   resize_to_fill(r.cost, blocks, 1.f);
   resize_to_fill(r.log, blocks);
+  resize_to_fill(r.goal, blocks, std::uint8_t{kFirstLog});
   return r;
 }
 
 bool is_valid(const Refinement& r) {
   if (r.width < 1 || r.height < 1 || !has_valid_arrays(r) || !has_valid_numbers(r))
     return false;
-  if (r.wanted.empty())
-    return r.finished || is_new(r);
-  return !r.finished && is_round(r);
+  if (r.wanted.empty() && !r.finished && !is_new(r) && r.rounds == 0)
+    return false;
+  return !(r.finished && !r.wanted.empty()) && is_round(r) && is_check(r) && is_before(r);
+}
+
+bool lift_limits(Refinement& r) {
+  if (r.limited && r.before.empty())
+    return false;
+  if (r.limited) {
+    Refinement before = std::move(r.before.front());
+    r = std::move(before);
+  }
+  r.finished = false;
+  r.limit = Limit::kNone;
+  return true;
 }
 
 std::uint64_t total_samples(const Refinement& r) {

@@ -12,6 +12,7 @@
 #include "grelha/camera.hpp"
 #include "grelha/image.hpp"
 #include "grelha/render_options.hpp"
+#include "grelha/stats.hpp"
 #include "kernel/base/pages.hpp"
 #include "kernel/scene/shading_view.hpp"
 
@@ -91,14 +92,18 @@ static_assert(1 << kMostLog == kMostSamples);
 /// Logarithm of the samples that a pixel begins with: two packets a block, and a difference of
 /// eighths in each pixel.
 inline constexpr int kFirstLog = 3;
+static_assert(1 << kFirstLog == kLeastMost);
+/// Times that a round doubles the samples of a block at most: consecutive samples of a pixel share
+/// packets.
+inline constexpr int kMostDoublings = 3;
 
-/// Results of checks of a picture's error: sums over the pixels sampled again, each times the
-/// number of pixels it stands for. Half the squared difference of two independent means of n
-/// samples is their squared error, without a model.
+/// Results of checks of a picture's error: sums over the blocks that checks doubled, each times the
+/// number of blocks it stands for. The squared difference of a block's old and new halves tells
+/// what the old samples were worth, without a model: E[(A - B)^2] / 4 = V(n) - V(2n).
 struct CheckSums {
-  /// of blocks whose samples differ: squared errors y and claimed variances x, and their products
+  /// of blocks whose samples differed: squared errors y and claimed variances x, and their products
   double y = 0, x = 0, yy = 0, xy = 0, xx = 0;
-  /// of blocks whose samples agree, which claim nothing: n y, its square, pixels
+  /// of blocks whose samples agreed, which claim nothing: n y, its square, pixels
   double ny = 0, nyny = 0, count = 0;
 
   /// Factor of the variance over what blocks claim.
@@ -109,12 +114,22 @@ struct CheckSums {
 CheckSums operator*(double weight, const CheckSums& c);
 CheckSums operator+(const CheckSums& a, const CheckSums& b);
 
+/// A block that a check doubles.
+struct CheckedBlock {
+  std::uint32_t block;
+  float claim;       ///< variance of a pixel that it claimed before; 0: its samples agreed
+  float stands_for;  ///< so many blocks
+};
+
 /// All that is known of a picture between two pieces of its work.
 ///
 /// Every pixel starts with 2^kFirstLog samples; each round then doubles those of the blocks whose
 /// variance would fall most for each new ray. A pixel's samples are one Owen-scrambled sequence:
 /// E[(A - B)^2] / 4 of the means A, B of its halves is V(n/2) - V(n), without a model; that V falls
 /// by `variance_ratio` a doubling, measured over the picture, gives V(n).
+///
+/// The rounds that end nothing are the same whatever error, samples or seconds are asked for. From
+/// the first other round on the picture is `limited`.
 struct Refinement {
   int width = 0;
   int height = 0;
@@ -127,24 +142,31 @@ struct Refinement {
   std::vector<float> cost;  ///< [blocks] rays a sample takes, of the chunk last sampled with it
   /// [blocks] log2 of the samples of each pixel; 0: none yet
   std::vector<std::uint8_t> log;
+  /// [blocks] the same once the round in work is done
+  std::vector<std::uint8_t> goal;
   /// blocks that the round in work has not reached yet, in its order; empty between rounds
   std::vector<std::uint32_t> wanted;
+  std::vector<CheckedBlock> checking;  ///< blocks of the check in work; empty: it is none
   /// over the last rounds, sums of squared differences of halves: of all samples, of the new ones
   double variance_drop = 0;
   double variance_level = 0;
   double round_drop = 0, round_level = 0;  ///< the same of the round in work
   float variance_ratio = .4f;              ///< V(n) / V(n/2)
-  float gain_threshold = .25f;      ///< gain a ray that a block of the round in work had to promise
-  CheckSums checked;                ///< results of checks
-  int checks = 0;                   ///< of the picture's error
-  std::uint64_t checked_at = 0;     ///< samples there were at the last one
-  std::uint64_t check_samples = 0;  ///< taken for checks alone
-  int rounds = 0;                   ///< done
-  bool last = false;                ///< no round follows the one in work
+  CheckSums checked;                       ///< results of checks
+  int checks = 0;                          ///< of the picture's error
+  int repeats = 0;                         ///< checks since the last round that was none
+  std::uint64_t checked_at = 0;            ///< samples there were at the last one
+  std::uint64_t check_samples = 0;         ///< that checks took
+  int rounds = 0;                          ///< done, without checks
+  Limit limit = Limit::kNone;  ///< that ended the picture, or ends it after the round in work
+  bool limited = false;
   bool finished = false;
   std::uint64_t rays = 0;  ///< sent so far
+  double forecast = 0;     ///< rays that the whole picture takes, as far as is known
   double seconds = 0;      ///< spent so far
   double share = 0;        ///< of the way to the target, as far as is known
+  /// the picture before it was limited, where RefineOptions::refinable asks for it: one at most
+  std::vector<Refinement> before;
 
   Blocks blocks() const { return {width, height}; }
 };
@@ -166,6 +188,10 @@ Refinement make_refinement(const Camera& camera);
 /// True if the sizes of the arrays match and rendering can produce every number. Check a loaded
 /// file with this before going on with it.
 bool is_valid(const Refinement& r);
+
+/// Goes back to what the picture was before it was limited, so that other limits go on from there.
+/// Returns false if that was not kept.
+bool lift_limits(Refinement& r);
 
 /// Number of samples taken, over all pixels.
 std::uint64_t total_samples(const Refinement& r);

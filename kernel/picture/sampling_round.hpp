@@ -1,18 +1,16 @@
 #pragma once
-// A round of a refined picture: which blocks it doubles, how threads share them, and what their
-// new samples add to the picture.
+// A round of a refined picture: which blocks it doubles (round_plan.cpp), how threads share them,
+// and what their new samples add to the picture.
 
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "grelha/render_options.hpp"
-#include "grelha/stats.hpp"
 #include "kernel/picture/block_errors.hpp"
 #include "kernel/picture/refinement.hpp"
 #include "kernel/scene/shading_view.hpp"
 #include "kernel/shade/strips.hpp"
-#include "kernel/world/world_impl.hpp"
 
 namespace grelha {
 
@@ -33,16 +31,38 @@ struct Spent {
   double seconds;
 };
 
-/// Wants the blocks of the next round, in the order of `order`, and says how far the picture is.
-/// Returns whether there is a round.
-bool choose_round(Refinement& r,
+/// Wants the blocks of the next round, in the order of `order`, or sets r.limit. Returns whether
+/// there is a round.
+bool plan_round(Refinement& r,
+                const BlockErrors& errors,
+                const RefineOptions& asked,
+                const std::vector<std::uint32_t>& order,
+                const Spent& spent);
+
+/// True when the error asked for seems to be met and no recent check says so; also right after a
+/// check that found far more, which may rest on a hit or two.
+bool is_check_due(const Refinement& r,
                   const BlockErrors& errors,
                   const RefineOptions& asked,
-                  const std::vector<std::uint32_t>& order,
-                  const Spent& spent);
+                  std::uint64_t samples);
 
-/// Samples that the next round gives each pixel of a block.
-std::uint32_t next_count(const Refinement& r, std::size_t block);
+/// Makes the next round a check of the picture's error: it doubles blocks drawn at random, whatever
+/// they claim, and those that claim most. What decided where to stop cannot be wrong in the same
+/// way twice. Returns false, and sets r.limit, if the limits leave too little for it.
+bool plan_check(Refinement& r,
+                const BlockErrors& errors,
+                const RefineOptions& asked,
+                const std::vector<std::uint32_t>& order,
+                const Spent& spent,
+                std::uint32_t seed);
+
+/// Takes what the check in work found into r.checked. Sums of earlier checks count for half.
+void close_check(Refinement& r, std::uint64_t samples);
+
+/// Times that the round in work doubles a block's samples.
+int doublings(const Refinement& r, std::size_t block);
+/// Samples that it gives each pixel of a block.
+std::uint32_t new_count(const Refinement& r, std::size_t block);
 
 /// Cuts the wanted blocks into chunks. After an interruption between two chunks, the rest of the
 /// round is cut into the same chunks as without it: the cost of a sample is measured by chunk.
@@ -55,16 +75,7 @@ void add_run(Refinement& r, const PixelRun& run, const std::int64_t* sums, Chunk
 /// the other chunks stay wanted.
 bool end_round(Refinement& r, const std::vector<Chunk>& chunks, std::size_t done);
 
-// A second opinion on a refined picture: some pixels once more, with other samples. Estimates that
-// decided where to stop cannot be wrong in the same way twice.
-
-/// Samples some pixels of a picture once more, by another sequence: others each time. The same for
-/// any number of threads. `stats` gets the rays, r.check_samples stays as it is.
-CheckSums check_error(const World::Impl& world,
-                      const Setup& setup,
-                      const RenderOptions& options,
-                      const BlockErrors& errors,
-                      const Refinement& r,
-                      RenderStats& stats);
+/// Takes what the round measured of the variances into what earlier ones did.
+void close_round(Refinement& r);
 
 }  // namespace grelha

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <memory>
+#include <vector>
 
+#include "grelha/scene_spans.hpp"
+#include "kernel/base/parallel_for.hpp"
 #include "kernel/picture/tolerances.hpp"
 #include "kernel/query/variants.hpp"
 #include "kernel/shade/pixel_box.hpp"
-#include "kernel/base/parallel_for.hpp"
 
 namespace grelha {
 namespace {
@@ -19,6 +22,110 @@ constexpr double kMostBlur = .25;   ///< pixels: a box holds too little of a thi
 constexpr double kBoxTaken = .9 * static_cast<double>(kLargestBox);  ///< sides are rounded up
 constexpr double kMargin = .02;  ///< pixels around a box, for rounding
 constexpr std::size_t kRaysOfTurn = 256;
+
+struct Point3 {
+  double at[3];
+  double operator[](std::size_t a) const { return at[a]; }
+  double& operator[](std::size_t a) { return at[a]; }
+};
+Point3 operator-(const Point3& a, const Point3& b) {
+  return {{a[0] - b[0], a[1] - b[1], a[2] - b[2]}};
+}
+double dot(const Point3& a, const Point3& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// All of an object lies within `radius` of the stretch between its ends.
+struct Capsule {
+  Point3 end[2];
+  double radius;
+  std::uint32_t material;
+
+  double length() const { return std::sqrt(dot(end[1] - end[0], end[1] - end[0])); }
+};
+
+Capsule capsule_of(const SphereSpans& s, std::size_t i) {
+  const Point3 centre{{s.x[i], s.y[i], s.z[i]}};
+  return {{centre, centre}, std::abs(static_cast<double>(s.radius[i])), s.material[i]};
+}
+
+Capsule capsule_of(const ConeSpans& c, std::size_t i) {
+  return {{{{c.base_x[i], c.base_y[i], c.base_z[i]}}, {{c.apex_x[i], c.apex_y[i], c.apex_z[i]}}},
+          std::max(std::abs(static_cast<double>(c.base_radius[i])),
+                   std::abs(static_cast<double>(c.apex_radius[i]))),
+          c.material[i]};
+}
+
+/// A camera in double precision.
+class ToPicture {
+ public:
+  explicit ToPicture(const FrameView& f) : f_(f) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      eye_[a] = f.eye[a];
+      ff_ += square(f.forward[a]);
+      rr_ += square(f.right[a]);
+      uu_ += square(f.up[a]);
+    }
+  }
+  struct Spot {
+    double x, y;   ///< pixels
+    double depth;  ///< in lengths of `forward`
+  };
+  Spot operator()(const Point3& p) const {
+    double z = 0;
+    double x = 0;
+    double y = 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double d = p[a] - eye_[a];
+      z += d * f_.forward[a];
+      x += d * f_.right[a];
+      y += d * f_.up[a];
+    }
+    z /= ff_;
+    const double shrink = f_.parallel ? 1 : z;
+    return {.5 * f_.width + x / (rr_ * shrink), .5 * f_.height - y / (uu_ * shrink), z};
+  }
+  /// Where a ray that sees a point starts.
+  Point3 eye(const Point3& p) const {
+    if (!f_.parallel)
+      return eye_;
+    const double depth = (*this)(p).depth;
+    Point3 at = p;
+    for (std::size_t a = 0; a < 3; ++a)
+      at[a] -= depth * f_.forward[a];
+    return at;
+  }
+  /// How wide a pixel is.
+  double pixel(double depth) const { return (f_.parallel ? 1 : depth) * std::sqrt(rr_); }
+  /// Pixels that a ball of a radius reaches from its middle at most, anywhere in the picture: balls
+  /// look longer in its corners.
+  double half_width(double radius, double depth) const {
+    const double corner =
+        f_.parallel ? 0 : square(.5 * f_.width) * rr_ + square(.5 * f_.height) * uu_;
+    return radius / pixel(depth) * std::sqrt(1 + corner / ff_);
+  }
+
+ private:
+  static double square(double x) { return x * x; }
+  const FrameView& f_;
+  Point3 eye_;
+  double ff_ = 0;
+  double rr_ = 0;
+  double uu_ = 0;
+};
+
+/// Cuts off what of a capsule lies behind the eye, or nearly so; false: nothing is left.
+bool cut_behind(const ToPicture& to, Capsule& capsule) {
+  const double z[2] = {to(capsule.end[0]).depth, to(capsule.end[1]).depth};
+  const double least = 1e-3 * std::max(z[0], z[1]);
+  if (!(least > 0))
+    return false;
+  for (std::size_t k = 0; k < 2; ++k)
+    for (std::size_t a = 0; z[k] < least && a < 3; ++a)
+      capsule.end[k][a] +=
+          (least - z[k]) / (z[1 - k] - z[k]) * (capsule.end[1 - k][a] - capsule.end[k][a]);
+  return true;
+}
 
 /// A part of a capsule, the target of one ray.
 struct Target : Capsule {
@@ -32,9 +139,8 @@ struct Target : Capsule {
   }
 };
 
-std::vector<Capsule> capsules_of(const World::Impl& world) {
-  const GeometrySpans& g = world.primitives.geometry;
-  std::vector<Capsule> capsules = mesh_parts(g.triangles);
+std::vector<Capsule> capsules_of(const GeometrySpans& g) {
+  std::vector<Capsule> capsules;
   for (std::size_t i = 0; i < g.spheres.size(); ++i)
     capsules.push_back(capsule_of(g.spheres, i));
   for (std::size_t i = 0; i < g.cones.size(); ++i)
@@ -66,33 +172,10 @@ class TargetSearch {
         to_(setup.frame),
         r_(r),
         counts_(n),
-        capsules_(capsules_of(world)) {}
+        capsules_(capsules_of(world.primitives.geometry)) {}
 
   void run() {
-    std::vector<Target> targets =
-        targets_from_camera([](const Capsule& capsule) { return capsule; });
-    each_turn_of(targets,
-                 [&](TargetRays& rays, std::size_t first, std::size_t count, TraceCounts& n) {
-                   look(rays, targets.data() + first, count, n);
-                 });
-    mark(targets);
-    for (const MirrorPlane& mirror : flat_mirrors(world_))
-      look_into(mirror);
-    // blurred shadows are hit by samples; many lights leave little of each shadow to see
-    std::size_t left = r_.box.size();
-    const ShadingView& shading = setup_.shading;
-    for (int l = 0; !shading.area && l < shading.light_count; ++l) {
-      const float* const at = shading.lights + kLightFloats * l;
-      if (left < capsules_.size())
-        break;
-      left -= capsules_.size();
-      throw_shadows({{at[0], at[1], at[2]}});
-    }
-  }
-
- private:
-  template <class Work>
-  void each_turn_of(const std::vector<Target>& targets, const Work& work) {
+    std::vector<Target> targets = thin_parts();
     const std::size_t turns = (targets.size() + kRaysOfTurn - 1) / kRaysOfTurn;
     std::vector<TraceCounts> counts(turns);
     each_turn(
@@ -101,12 +184,17 @@ class TargetSearch {
         [] { return std::make_unique<TargetRays>(); },
         [&](std::size_t turn, const std::unique_ptr<TargetRays>& rays) {
           const std::size_t first = turn * kRaysOfTurn;
-          work(*rays, first, std::min(kRaysOfTurn, targets.size() - first), counts[turn]);
+          const std::size_t count = std::min(kRaysOfTurn, targets.size() - first);
+          look(*rays, targets.data() + first, count, counts[turn]);
         });
     for (const TraceCounts& n : counts)
       counts_ += n;
+    for (const Target& target : targets)
+      if (target.hits_target)
+        mark(target);
   }
 
+ private:
   /// Radius of the disc that a point shows as, in pixels.
   double blur(double depth) const {
     const FrameView& f = setup_.frame;
@@ -157,12 +245,10 @@ class TargetSearch {
     return targets;
   }
 
-  /// At where capsules seem to be.
-  template <class Place>
-  std::vector<Target> targets_from_camera(const Place& place) const {
+  /// Of all capsules that look thin.
+  std::vector<Target> thin_parts() const {
     std::vector<ThinCapsule> thin;
-    for (const Capsule& real : capsules_) {
-      Capsule capsule = place(real);
+    for (Capsule capsule : capsules_) {
       if (!cut_behind(to_, capsule))
         continue;
       const double pixel =
@@ -221,107 +307,12 @@ class TargetSearch {
       targets[i].hits_target = !before(i);
   }
 
-  /// Marks where thin capsules show in a mirror.
-  void look_into(const MirrorPlane& mirror) {
-    std::vector<Target> targets = targets_from_camera([&](Capsule capsule) {
-      for (Point3& end : capsule.end)
-        end = mirror.image(end);
-      return capsule;
-    });
-    each_turn_of(targets,
-                 [&](TargetRays& rays, std::size_t first, std::size_t count, TraceCounts& n) {
-                   look_by_mirror(mirror, rays, targets.data() + first, count, n);
-                 });
-    mark(targets);
-  }
-
-  /// Which of the images a ray from the eye arrives at by way of the mirror.
-  void look_by_mirror(const MirrorPlane& mirror,
-                      TargetRays& rays,
-                      Target* targets,
-                      std::size_t count,
-                      TraceCounts& n) const {
-    for (std::size_t i = 0; i < count; ++i)
-      rays.set(i, to_.eye(targets[i].middle()), targets[i].middle(), 0);
-    closest(rays, rays, count, n);
-    for (std::size_t i = 0; i < count; ++i) {
-      const Point3 image = targets[i].middle(), eye = to_.eye(image);
-      const double eye_above = mirror.above(eye), all = eye_above - mirror.above(image);
-      const double t = eye_above / all;  // where the way to the image crosses the mirror
-      targets[i].hits_target = rays.id[i] != kNoPrimitive && t > 0 && t < 1 &&
-                               std::abs(static_cast<double>(rays.t[i]) - t) <= 1e-3 * t &&
-                               is_smooth_mirror(world_.shading.materials, material_of(rays.id[i]));
-      Point3 at = eye;
-      for (std::size_t a = 0; a < 3 && targets[i].hits_target; ++a)
-        at[a] += t * (image[a] - eye[a]);
-      rays.set(i, at, mirror.image(image), 1e-4);
-    }
-    closest(rays, rays, count, n);
-    for (std::size_t i = 0; i < count; ++i) {
-      Target real = targets[i];
-      for (Point3& end : real.end)
-        end = mirror.image(end);
-      const Point3 from{{rays.org[0][i], rays.org[1][i], rays.org[2][i]}};
-      targets[i].hits_target =
-          targets[i].hits_target &&
-          (rays.id[i] == kNoPrimitive || static_cast<double>(rays.t[i]) >= near(real, from));
-    }
-  }
-
-  /// Marks where shadows of thin capsules fall, if the eye sees that.
-  void throw_shadows(const Point3& light) {
-    std::vector<ThinCapsule> thin;
-    for (const Capsule& capsule : capsules_)
-      if (const double pixel = to_.pixel(std::abs(to_(capsule.end[0]).depth));
-          capsule.radius < kThin * pixel)
-        thin.push_back({capsule, pixel});
-    std::vector<Target> targets = parts_of(thin);
-    each_turn_of(targets,
-                 [&](TargetRays& rays, std::size_t first, std::size_t count, TraceCounts& n) {
-                   cast_shadows(rays, light, targets.data() + first, count, n);
-                 });
-    mark(targets);
-  }
-
-  /// Moves things on to the surfaces behind them.
-  void cast_shadows(TargetRays& rays,
-                    const Point3& light,
-                    Target* targets,
-                    std::size_t count,
-                    TraceCounts& n) const {
-    for (std::size_t i = 0; i < count; ++i)
-      rays.set(i, light, targets[i].middle(), 2 - near(targets[i], light));
-    closest(rays, rays, count, n);
-    for (std::size_t i = 0; i < count; ++i) {
-      targets[i].hits_target = rays.id[i] != kNoPrimitive;
-      if (!targets[i].hits_target)
-        continue;
-      const double t = static_cast<double>(rays.t[i]);
-      for (Point3& end : targets[i].end)
-        for (std::size_t a = 0; a < 3; ++a)
-          end[a] = light[a] + t * (end[a] - light[a]);
-      targets[i].radius *= t;
-    }
-    for (std::size_t i = 0; i < count; ++i)
-      rays.set(i, to_.eye(targets[i].middle()), targets[i].middle(), 0);
-    closest(rays, rays, count, n);
-    for (std::size_t i = 0; i < count; ++i)
-      targets[i].hits_target =
-          targets[i].hits_target && rays.id[i] != kNoPrimitive && rays.t[i] > .999f;
-  }
-
   /// The brightest that a thing may look, over white.
   float brightness(std::uint32_t material) const {
     float most = 1;
     for (const MaterialField c : {kEmissionR, kEmissionG, kEmissionB})
       most = std::max(most, world_.shading.materials.field[c][material]);
     return most;
-  }
-
-  void mark(const std::vector<Target>& targets) {
-    for (const Target& target : targets)
-      if (target.hits_target)
-        mark(target);
   }
 
   void mark(const Target& target) {
@@ -383,11 +374,6 @@ class TargetSearch {
 };
 
 }  // namespace
-
-std::size_t object_count(const World::Impl& world) {
-  const GeometrySpans& g = world.primitives.geometry;
-  return g.spheres.size() + g.cones.size() + g.triangles.size();
-}
 
 void target_small_objects(
     const World::Impl& world, const Setup& setup, int threads, Refinement& r, TraceCounts& counts) {

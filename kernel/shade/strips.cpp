@@ -160,6 +160,8 @@ void check_refinement(const RenderOptions& o) {
   require(r.error >= 0 && r.seconds >= 0, "an error and a time must not be negative");
   if (!r.on())
     return;
+  require(r.most == 0 || (r.most >= kLeastMost && r.most <= kMostSamples),
+          "the most samples of a pixel must be from 8 to 65536");
   require(!is_counted_first(o.sampling.sampler),
           "jittered samples and those of blue must be counted before they are taken: to meet an "
           "error, use sobol or random");

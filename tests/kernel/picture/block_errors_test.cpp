@@ -118,9 +118,9 @@ Refinement rarely_lit(std::uint32_t every, std::uint8_t log, Random& random, int
   return r;
 }
 
-/// Hits of one sample in so many tell every block of a surface the same, hit or not.
+/// Blocks around tell a block how often samples hit, where few of its own did, or none.
 TEST(BlockErrors, PoolRareHits) {
-  for (const std::uint32_t every : {500u, 2000u, 10000u}) {
+  for (const std::uint32_t every : {50u, 100u, 200u}) {
     Random random(every);
     const Refinement r = rarely_lit(every, kFirstLog, random);
     const BlockErrors errors = judged(r);
@@ -128,7 +128,7 @@ TEST(BlockErrors, PoolRareHits) {
     int claims = 0;
     for (std::size_t b = 0; b < r.log.size(); ++b)
       claims += errors.variance(b) > .2 * truth && errors.variance(b) < 5 * truth;
-    EXPECT_GE(claims, static_cast<int>(r.log.size()) * (every > 5000 ? 8 : 9) / 10) << every;
+    EXPECT_GE(claims, static_cast<int>(r.log.size()) * 9 / 10) << every;
     const double hits = 96. * 96 * (1 << kFirstLog) / every;
     EXPECT_NEAR(errors.totals().rmse / std::sqrt(truth), 1, .15 + 1 / std::sqrt(hits)) << every;
   }

@@ -316,6 +316,12 @@ std::vector<Method> methods() {
   o.sampling = {};
   add("ByError", [](RenderOptions& m) { m.refine.error = .05; });
   add("BySamples", [](RenderOptions& m) { m.refine.samples = 24; });
+  add("ByErrorWithinLimits", [](RenderOptions& m) {
+    m.refine.error = .02;
+    m.refine.samples = 60;
+    m.refine.most = 128;
+    m.refine.refinable = true;
+  });
   return all;
 }
 
