@@ -50,6 +50,8 @@ def kill_and_resume(options, folder):
     alone = time.monotonic() - begin
     killed = resumed = 0
     for turn in range(rounds):
+        if os.path.exists(checkpoint):  # kept for a finer error
+            os.remove(checkpoint)
         for attempt in range(200):
             resumed += os.path.exists(checkpoint)
             run = subprocess.Popen(command + options + [

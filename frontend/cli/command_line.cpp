@@ -50,14 +50,18 @@ void check_samples(const Effects& e) {
 void check_refined(const RenderCommand& command) {
   const RefineOptions& r = command.render.refine;
   const Effects& e = command.effects;
-  if (int(r.error > 0) + int(r.seconds > 0) + int(r.samples > 0) > 1)
-    throw UsageError("--error and --time: one of them, found both");
+  if (r.seconds > 0 && r.samples > 0)
+    throw UsageError("--time: expected SECONDS or samples:N, found both");
   if (!r.on() && !(command.samples_map.empty() && command.error_map.empty()))
     throw UsageError("--samples-map and --error-map want --error or --time");
   if (!r.on())
     return;
-  if (e.samples || e.jitter > 0 || e.adaptive.on)
-    throw UsageError("--error and --time choose the samples: no --samples or --aa beside them");
+  if (e.jitter > 0 || e.adaptive.on)
+    throw UsageError("--error and --time choose the samples: no --aa beside them");
+  if (e.samples && *e.samples < kLeastMost)
+    throw UsageError("--samples: expected at least " + std::to_string(kLeastMost) +
+                     " with --error or --time, which begin with as many, found " +
+                     std::to_string(*e.samples));
   if (e.sampler && is_counted_first(*e.sampler))
     throw UsageError("--sampler: expected sobol or random with --error or --time");
   if (e.lens && e.lens->samples > 0)

@@ -143,7 +143,7 @@ void add_long_work(CLI::App& app, LongWork& work) {
         "--checkpoint",
         "FILE",
         "save now and then, and when stopped by SIGHUP, SIGINT or SIGTERM; the same command goes "
-        "on from it",
+        "on from it; with --error it stays, and a finer E goes on from it",
         [&work](Text text) { work.checkpoint = regular_file_name("--checkpoint", text); })
       ->group(kGroup);
   value(app, "--checkpoint-every", "SECONDS", "how often [60]", [&work](Text text) {
@@ -220,12 +220,13 @@ void add_sample_counts(CLI::App& sub, RenderCommand& command) {
   value(sub,
         "--error",
         "E",
-        "as many samples, where they help most, as an RMSE of E takes (white is 1)",
+        "as many samples, where they help most, as an RMSE of E takes (white is 1), at most "
+        "--samples in a pixel",
         [&command](Text text) { parse_error_bound(text, command.render.refine); });
   value(sub,
         "--time",
         "SECONDS",
-        "the same for so long; samples:N repeats what a run reported",
+        "the same for so long, or until E is met; samples:N repeats what a run reported",
         [&command](Text text) { parse_time(text, command.render.refine); });
   image_file(sub,
              "--samples-map",

@@ -371,7 +371,7 @@ class SceneRender {
     const Stopwatch write;
     work.finish(command_.layers.any() ? first_hits(world, camera_, file_.frame, command_.layers)
                                       : Layers{});
-    if (command_.work.save_until_end && work.saved_location())
+    if (command_.work.save_until_end && command_.render.refine.error == 0 && work.saved_location())
       left_.emplace_back(command_.work.checkpoint, *work.saved_location());
     write_map(command_.samples_map, "samples of each pixel", maps.samples, camera_, [](double n) {
       return std::log2(n);

@@ -183,6 +183,13 @@ Json options_json(const RenderCommand& command) {
           {"threads", command.render.threads}};
 }
 
+const char* limit_name(Limit limit) {
+  return limit == Limit::kError     ? "error"
+         : limit == Limit::kSamples ? "samples"
+         : limit == Limit::kSeconds ? "time"
+                                    : "nothing";
+}
+
 Json error_json(const RefineOptions& asked, const ErrorStats& e) {
   return {{"asked", asked.error},
           {"seconds", asked.seconds},
@@ -193,6 +200,7 @@ Json error_json(const RefineOptions& asked, const ErrorStats& e) {
           {"rounds", e.rounds},
           {"samples", e.samples},
           {"met", e.met},
+          {"ended", limit_name(e.ended)},
           {"least", e.least},
           {"most", e.most}};
 }
@@ -311,17 +319,25 @@ std::string rounded_up(double value) {
   return print("%.2g", std::strtod(print("%de%d", ++tens, power).c_str(), nullptr));
 }
 
+const char* limit_text(Limit limit) {
+  return limit == Limit::kError     ? "the error asked for"
+         : limit == Limit::kSamples ? "the number of samples"
+                                    : "the time";
+}
+
 std::string error_text(const ErrorStats& e, const RunReport& report) {
   std::string text =
       print("; RMSE about %.2g, at most ", e.rmse) + rounded_up(e.rmse_bound) + " (95 %)";
   if (e.checks > 0)
-    text += print(", audited by %.1f %% more samples",
+    text += print(", checked by %.1f %% of the samples",
                   100 * double(e.check_samples) / double(e.samples));
   text += print("; %llu samples, %.1f a pixel, %u to %u",
                 static_cast<unsigned long long>(e.samples),
                 double(e.samples) / report.width / report.height,
                 e.least,
                 e.most);
+  if (e.ended != Limit::kNone)
+    text += print("; ended by %s", limit_text(e.ended));
   return text;
 }
 
@@ -340,7 +356,10 @@ std::string unmet_error(const RenderCommand& command, const RunReport& report) {
     return "";
   return command.scene +
          print(": warning: --error %g is not met: RMSE about %.2g, at most ", asked, e.rmse) +
-         rounded_up(e.rmse_bound) + print(" (95 %%), with up to %u samples in a pixel", e.most);
+         rounded_up(e.rmse_bound) +
+         print(" (95 %%), with up to %u samples in a pixel; %s ended it",
+               e.most,
+               limit_text(e.ended));
 }
 
 std::string stats_json(const RenderCommand& command, const RunReport& report) {

@@ -105,7 +105,12 @@ void apply_effects(const Effects& e, SceneFile& file, RenderOptions& options) {
 
   SampleOptions& s = options.sampling;
   const int lens_samples = e.lens && e.lens->aperture > 0 ? std::max(e.lens->samples, 1) : 1;
-  s.samples = std::clamp(samples_of(e, file, lens_samples, s.samples), 1, kMostSamples);
+  Effects counted = e;
+  if (options.refine.on()) {
+    options.refine.most = e.samples.value_or(0);
+    counted.samples.reset();
+  }
+  s.samples = std::clamp(samples_of(counted, file, lens_samples, s.samples), 1, kMostSamples);
   s.sampler = e.sampler.value_or(e.jitter > 0 ? Sampler::kJitter : Sampler::kSobol);
   s.seed = e.seed;
   options.subdivision = e.adaptive;

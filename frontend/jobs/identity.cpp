@@ -1,6 +1,7 @@
 #include "frontend/jobs/identity.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <iterator>
 #include <sstream>
@@ -64,15 +65,29 @@ std::string text(Number value) {
   return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};
 }
 
-/// The number of samples a pixel, or the option that determines it.
-std::string samples_text(const RenderOptions& o) {
-  const RefineOptions& r = o.refine;
+constexpr std::array<std::string_view, 3> kLimits{"error=", "time=", "samples="};
+
+/// The limits of a picture by error.
+std::string limits_text(const RefineOptions& r) {
+  std::string words;
+  const auto add = [&words](const std::string& word) {
+    words += (words.empty() ? "" : " ") + word;
+  };
   if (r.error > 0)
-    return "error=" + text(r.error);
+    add("error=" + text(r.error));
   if (r.seconds > 0)
-    return "time=" + text(r.seconds);
+    add("time=" + text(r.seconds));
   if (r.samples > 0)
-    return "time=samples:" + std::to_string(r.samples);
+    add("time=samples:" + std::to_string(r.samples));
+  if (r.most > 0)
+    add("samples=" + std::to_string(r.most));
+  return words;
+}
+
+/// The number of samples a pixel, or the options that determine it.
+std::string samples_text(const RenderOptions& o) {
+  if (o.refine.on())
+    return limits_text(o.refine);
   const std::string count = "samples=" + std::to_string(o.sampling.samples);
   return o.subdivision.on ? count + " adaptive=" + text(o.subdivision.threshold) + ',' +
                                 std::to_string(o.subdivision.depth)
@@ -177,6 +192,15 @@ std::string own_words(const WordList& here, const WordList& there) {
 }
 
 }  // namespace
+
+std::string without_limits(const std::string& settings) {
+  std::istringstream in(settings);
+  std::string rest;
+  for (std::string word; in >> word;)
+    if (std::ranges::none_of(kLimits, [&](std::string_view l) { return word.starts_with(l); }))
+      rest += word + ' ';
+  return rest;
+}
 
 std::string difference(const std::string& settings,
                        const std::string& other,

@@ -37,6 +37,9 @@ Notes notes_of(const Identity& identity);
 /// `dir/balls.nff.gz` is called balls.
 std::string scene_name(const std::string& path);
 
+/// Settings without the words for where a picture by error ends: other limits may go on from it.
+std::string without_limits(const std::string& settings);
+
 /// The words in which they differ: `seed=1, NAME has seed=0`.
 std::string difference(const std::string& settings,
                        const std::string& other,

@@ -39,14 +39,18 @@ bool exists(const std::string& path) {
   return stat(path.c_str(), &about) == 0 || errno != ENOENT;
 }
 
-/// Returns why a checkpoint belongs to another picture than the wanted one; empty if it fits.
-std::string find_mismatch(const Checkpoint& found, const Identity& wanted, const Picture& begun) {
+/// Returns why a checkpoint belongs to another picture than the wanted one; empty if it fits. One
+/// by error that had other limits fits if it can go on with these; then they are lifted.
+std::string find_mismatch(Checkpoint& found, const Identity& wanted, const Picture& begun) {
   if (found.identity.scene != wanted.scene)
     return "is of another scene";
-  if (found.identity.settings != wanted.settings)
-    return "has " + difference(found.identity.settings, wanted.settings, "this render");
+  const bool same_kind = found.picture.kind() == begun.kind();
+  const std::string &has = found.identity.settings, &wants = wanted.settings;
+  if (has != wants &&
+      !(same_kind && without_limits(has) == without_limits(wants) && found.picture.lift_limits()))
+    return "has " + difference(has, wants, "this render");
   // whatever its settings claim
-  if (found.picture.kind() != begun.kind())
+  if (!same_kind)
     return "is of another kind";
   if (found.picture.part() != begun.part())
     return "is of another part, " + part_text(found.picture.part());
@@ -233,6 +237,7 @@ int LongRender::run(const World& world,
     return stops() == 0;
   };
   RenderOptions options = command_.render;
+  options.refine.refinable = keeps_checkpoint();
   options.progress = [&](double share) {
     progress(share);
     return stops() == 0 && !should_run(saving) && !should_run(showing);
@@ -259,7 +264,7 @@ void LongRender::finish(Layers layers) {
     save_all();
     throw;
   }
-  if (command_.work.save_until_end && save_requested())
+  if (keeps_checkpoint() || (command_.work.save_until_end && save_requested()))
     return save();
   if (saved_location_ && saved_location_ == location_of(saved_.work))
     remove_kept(saved_.work);

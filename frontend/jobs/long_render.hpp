@@ -52,8 +52,8 @@ class LongRender {
   std::string stop_text(int signal) const;
 
   /// Writes picture or partial, by the first rank alone. Then the checkpoint has done its work and
-  /// is removed. It stays and holds everything where more scenes are to come, and where the writing
-  /// fails.
+  /// is removed. It stays and holds everything where more scenes are to come, where a finer error
+  /// may go on from it, and where the writing fails.
   void finish(Layers layers = {});
   /// Where the checkpoint is that this render read or wrote last; empty: it has none.
   const std::optional<Location>& saved_location() const { return saved_location_; }
@@ -69,6 +69,8 @@ class LongRender {
   static bool should_run(const IntervalTask& task);
   void run_task(IntervalTask& task);
   bool save_requested() const { return !command_.work.checkpoint.empty(); }
+  /// A finer error may go on from it.
+  bool keeps_checkpoint() const { return save_requested() && command_.render.refine.error > 0; }
   int stops() const;  ///< the signal to stop for, or 0
   void continue_from_saved();
   void save_now();

@@ -118,7 +118,8 @@ PictureMemory picture_memory(const RenderCommand& command, const Camera& camera)
   const Range rows = command.work.rows.value_or(Range{0, camera.height});
   // rows outside the picture are refused later
   const auto height = std::uint64_t(std::clamp(rows.end - rows.begin, 1, camera.height));
-  const std::uint64_t sum_bytes = refined      ? kRefined * pixels
+  const bool refinable = command.render.refine.error > 0 && !command.work.checkpoint.empty();
+  const std::uint64_t sum_bytes = refined      ? (refinable ? 2 : 1) * kRefined * pixels
                                   : subdivided ? kPixel * pixels
                                                : kSum * width * height;
   const auto threads = static_cast<std::uint64_t>(

@@ -30,14 +30,24 @@ bool are_distinct(const Blocks& blocks, std::size_t count) {
   return true;
 }
 
-/// True if r.wanted lists blocks that can be doubled as often as their goals say.
+bool is_new(const Refinement& r) {
+  return r.rounds == 0 &&
+         std::all_of(r.log.begin(), r.log.end(), [](std::uint8_t l) { return l == 0; });
+}
+
+/// True if r.wanted lists blocks that can be doubled as often as their goals say, among them all
+/// that have no samples.
 bool is_round(const Refinement& r) {
+  const auto can_take = [&](std::uint32_t b) {
+    return r.log[b] == 0 ? r.goal[b] == kFirstLog
+                         : r.goal[b] <= kMostLog && lies(r.goal[b] - r.log[b], 1, kMostDoublings);
+  };
+  const auto bare = std::count(r.log.begin(), r.log.end(), std::uint8_t{0});
   return are_distinct(r.wanted, r.log.size()) &&
-         std::all_of(r.wanted.begin(), r.wanted.end(), [&](std::uint32_t b) {
-           return r.goal[b] <= kMostLog &&
-                  (r.log[b] == 0 ? r.goal[b] == kFirstLog
-                                 : lies(r.goal[b] - r.log[b], 1, kMostDoublings));
-         });
+         std::all_of(r.wanted.begin(), r.wanted.end(), can_take) &&
+         (is_new(r) || bare == std::count_if(r.wanted.begin(),
+                                             r.wanted.end(),
+                                             [&](std::uint32_t b) { return r.log[b] == 0; }));
 }
 
 /// True if the blocks of a check have samples, or nothing is checked.
@@ -49,11 +59,6 @@ bool is_check(const Refinement& r) {
          std::all_of(r.checking.begin(), r.checking.end(), [&](const CheckedBlock& c) {
            return r.log[c.block] > 0 && lies(c.claim, 0.f, 1e30f) && lies(c.stands_for, 0.f, 1e9f);
          });
-}
-
-bool is_new(const Refinement& r) {
-  return r.rounds == 0 &&
-         std::all_of(r.log.begin(), r.log.end(), [](std::uint8_t l) { return l == 0; });
 }
 
 bool has_valid_numbers(const Refinement& r) {
@@ -163,11 +168,8 @@ Refinement make_refinement(const Camera& camera) {
 }
 
 bool is_valid(const Refinement& r) {
-  if (r.width < 1 || r.height < 1 || !has_valid_arrays(r) || !has_valid_numbers(r))
-    return false;
-  if (r.wanted.empty() && !r.finished && !is_new(r) && r.rounds == 0)
-    return false;
-  return !(r.finished && !r.wanted.empty()) && is_round(r) && is_check(r) && is_before(r);
+  return r.width >= 1 && r.height >= 1 && has_valid_arrays(r) && has_valid_numbers(r) &&
+         !(r.finished && !r.wanted.empty()) && is_round(r) && is_check(r) && is_before(r);
 }
 
 bool lift_limits(Refinement& r) {

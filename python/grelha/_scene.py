@@ -137,8 +137,9 @@ class Scene:
 
         width, height   pixels; None: as the scene says
         samples         rays for each pixel; None: as the scene needs
-        error           in place of samples: as many as take the estimated RMSE below it, above 0,
-                        at most 1
+        error           as many samples, where they help most, as take the estimated RMSE below
+                        it, above 0, at most 1; `samples` is then the most that a pixel gets, 8 at
+                        least
         seed            of the samples
         depth           longest path, in rays
         eye, at, up     (3,) where the camera is, what it looks at, what is up; None: as the scene

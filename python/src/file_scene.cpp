@@ -316,12 +316,13 @@ RenderOptions FileScene::options_for(const RenderArguments& given) const {
   options.depth = whole_number_in(given.depth, "depth", 1, kMostDepth);
   options.sampling.seed = std::uint32_t(whole_number_in(given.seed, "seed", 0, INT32_MAX));
   options.sampling.samples = samples_;
-  if (!given.samples.is_none())
-    options.sampling.samples = whole_number_in(given.samples, "samples", 1, kMostSamples);
-  if (given.error.is_none())
+  const bool by_error = !given.error.is_none();
+  if (!given.samples.is_none()) {
+    int& samples = by_error ? options.refine.most : options.sampling.samples;
+    samples = whole_number_in(given.samples, "samples", by_error ? kLeastMost : 1, kMostSamples);
+  }
+  if (!by_error)
     return options;
-  if (!given.samples.is_none())
-    throw py::value_error("samples, error: expected one of them, found both");
   options.refine.error = number_in(given.error, "error");
   if (!(options.refine.error > 0 && options.refine.error <= 1))
     wrong_value("error", "a number above 0, at most 1", std::to_string(options.refine.error));

@@ -129,7 +129,7 @@ class Misuses(unittest.TestCase):
             self.refused("angle", kind, self.scene.render, angle=bad)
         for bad, kind in (("a", TypeError), (0, ValueError), (-1, ValueError), (2, ValueError)):
             self.refused("error", kind, self.scene.render, error=bad)
-        self.refused("error", ValueError, self.scene.render, error=0.1, samples=3)
+        self.refused("samples", ValueError, self.scene.render, error=0.1, samples=3)
         self.refused("up", ValueError, self.scene.render, eye=(0, 0, 1), at=(0, 0, 0), up=(0, 0, 1))
 
     def test_images(self):

@@ -99,6 +99,8 @@ class Pictures(unittest.TestCase):
         self.assertFalse(np.array_equal(picture, fine))
         self.assertFalse(np.array_equal(fine, scene.render(64, 48, samples=16, seed=1)))
         coarse = scene.render(64, 48, error=0.05)
+        np.testing.assert_array_equal(coarse, scene.render(64, 48, error=0.05, samples=65536))
+        self.assertFalse(np.array_equal(coarse, scene.render(64, 48, error=0.05, samples=8)))
         self.assertLess(np.sqrt(((np.clip(coarse, 0, 1) - np.clip(fine, 0, 1)) ** 2).mean()), 0.1)
 
     def test_camera(self):

@@ -83,7 +83,7 @@ TEST_F(Program, WhatMemoryIsWantedIsEnough) {
         "-o x.grelha",
         "-o x.grelha --rows 100:1690",
         "-o x.pfm --checkpoint c",
-        "-o x.pfm --error 1 --samples-map s.pfm --error-map e.pfm --checkpoint c",
+        "-o x.pfm --error 1 --samples-map s.pfm --error-map e.pfm --checkpoint d",
         "-o x.pfm --aa adaptive:.1,2",
         "-o x.pfm --aa adaptive:.1,2 --checkpoint c"}) {
     const std::string command =

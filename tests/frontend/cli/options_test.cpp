@@ -75,6 +75,10 @@ TEST(Render, ErrorAndTime) {
   EXPECT_EQ(std::get<RenderCommand>(parse("render x.nff --time samples:12345678901"))
                 .render.refine.samples,
             12345678901u);
+  const auto all = std::get<RenderCommand>(parse("render x.nff --error .02 --time 9 --samples 64"));
+  EXPECT_EQ(all.render.refine.error, .02);
+  EXPECT_EQ(all.render.refine.seconds, 9);
+  EXPECT_EQ(all.effects.samples, 64);
   EXPECT_FALSE(std::get<RenderCommand>(parse("render x.nff")).render.refine.on());
 }
 
@@ -282,11 +286,10 @@ const Line kWrong[] = {
      "--time: expected seconds above 0 and up to 1e9, or samples:N, found \"-1\""},
     {"render a --time samples:0",
      "--time: expected samples:N with N from 1 to 2^64 - 1, found \"samples:0\""},
-    {"render a --error .1 --time 1", "--error and --time: one of them, found both"},
     {"render a --error .1 --samples 4",
-     "--error and --time choose the samples: no --samples or --aa beside them"},
+     "--samples: expected at least 8 with --error or --time, which begin with as many, found 4"},
     {"render a --time 1 --aa jitter:2",
-     "--error and --time choose the samples: no --samples or --aa beside them"},
+     "--error and --time choose the samples: no --aa beside them"},
     {"render a --error .1 --sampler jitter",
      "--sampler: expected sobol or random with --error or --time"},
     {"render a --samples-map s.png", "--samples-map and --error-map want --error or --time"},
@@ -297,7 +300,7 @@ const Line kWrong[] = {
     {"render a --aa adaptive:1.5,3", "--aa: expected a threshold from 0 to 1, found \"1.5\""},
     {"render a --aa adaptive:nan,3", "--aa: expected a threshold from 0 to 1, found \"nan\""},
     {"render a --aa adaptive:.1,3 --error .01",
-     "--error and --time choose the samples: no --samples or --aa beside them"},
+     "--error and --time choose the samples: no --aa beside them"},
     {"render a --aa adaptive:.1,9", "--aa: expected a whole number from 0 to 8, found \"9\""},
     {"render a --aa jitter:0", "--aa: expected a whole number from 1 to 256, found \"0\""},
     {"render a --shadows soft",

@@ -325,7 +325,7 @@ TEST(Summary, SaysOfAnErrorWhetherItIsMet) {
   RenderCommand command;
   command.image = "x.png";
   command.render.refine.error = .01;
-  const auto said = [&](double bound, int checks) {
+  const auto said = [&](double bound, int checks, Limit ended = Limit::kNone) {
     RunReport report;
     report.width = report.height = 10;
     ErrorStats& e = report.render.error;
@@ -334,6 +334,7 @@ TEST(Summary, SaysOfAnErrorWhetherItIsMet) {
     e.rmse_bound = bound;
     e.checks = checks;
     e.check_samples = 50;
+    e.ended = ended;
     e.least = 4;
     e.most = 128;
     const std::string line = report_line_of(command, report);
@@ -343,8 +344,10 @@ TEST(Summary, SaysOfAnErrorWhetherItIsMet) {
   EXPECT_EQ(said(.01, 0), "; RMSE about 0.007, at most 0.01" + samples + '\n');
   EXPECT_EQ(said(.01001, 0), "; RMSE about 0.007, at most 0.011" + samples + '\n');
   EXPECT_EQ(said(.00999, 1),
-            "; RMSE about 0.007, at most 0.01 (95 %), audited by 5.0 % more samples" +
+            "; RMSE about 0.007, at most 0.01 (95 %), checked by 5.0 % of the samples" +
                 samples.substr(samples.find(';')) + '\n');
+  EXPECT_EQ(said(.01, 0, Limit::kSeconds),
+            "; RMSE about 0.007, at most 0.01" + samples + "; ended by the time\n");
   command.render.refine.error = .1;
   EXPECT_EQ(said(.0991, 0), "; RMSE about 0.007, at most 0.1" + samples + '\n');
   EXPECT_EQ(said(1e-8, 0), "; RMSE about 0.007, at most 1e-08" + samples + '\n');

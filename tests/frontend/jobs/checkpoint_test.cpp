@@ -174,10 +174,14 @@ TEST(Checkpoint, OfImpossibleNumbersIsRefused) {
   EXPECT_TRUE(refused([&](Refinement& r) { r.cost[5] = nan; })) << "blocks are sorted by it";
   EXPECT_TRUE(refused([](Refinement& r) { r.cost[5] = 0; }));
   EXPECT_TRUE(refused([&](Refinement& r) { r.squares[1][7] = nan; }));
-  EXPECT_TRUE(refused([&](Refinement& r) { r.gain_threshold = nan; }))
-      << "it would never be low enough";
-  EXPECT_TRUE(
-      refused([](Refinement& r) { r.gain_threshold = std::numeric_limits<float>::infinity(); }));
+  EXPECT_TRUE(refused([](Refinement& r) { r.goal[r.wanted[0]] = r.log[r.wanted[0]]; }))
+      << "nothing to do";
+  EXPECT_TRUE(refused([](Refinement& r) { r.goal[r.wanted[0]] = 17; }));
+  EXPECT_TRUE(refused([](Refinement& r) { r.goal[r.wanted[0]] = 16; })) << "too many at once";
+  EXPECT_TRUE(refused([](Refinement& r) { r.checking = {{10 * 8, 0, 1}}; }));
+  EXPECT_TRUE(refused([&](Refinement& r) { r.checking = {{0, nan, 1}}; }));
+  EXPECT_TRUE(refused([](Refinement& r) { r.limit = static_cast<Limit>(4); }));
+  EXPECT_TRUE(refused([&](Refinement& r) { r.before = {good}; })) << "in the midst of a round";
   EXPECT_TRUE(refused([](Refinement& r) { r.variance_ratio = 1; }));
   EXPECT_TRUE(refused([](Refinement& r) { r.log[3] = 17; }));
   EXPECT_TRUE(refused([](Refinement& r) { r.log[3] = 2; }));
@@ -185,7 +189,11 @@ TEST(Checkpoint, OfImpossibleNumbersIsRefused) {
   EXPECT_TRUE(refused([](Refinement& r) { r.wanted[1] = r.wanted[0]; }))
       << "two threads would work on it";
   EXPECT_TRUE(refused([](Refinement& r) { r.wanted[1] = 10 * 8; }));
-  EXPECT_TRUE(refused([](Refinement& r) { r.wanted.clear(); })) << "neither finished nor begun";
+  EXPECT_FALSE(refused([](Refinement& r) { r.wanted.clear(); })) << "between two rounds";
+  EXPECT_TRUE(refused([](Refinement& r) {
+    r.wanted.clear();
+    r.log[3] = 0;
+  })) << "no round would sample it";
   EXPECT_TRUE(refused([](Refinement& r) { r.finished = true; }));
   EXPECT_TRUE(refused([](Refinement& r) { r.sums[8] = std::numeric_limits<std::int64_t>::max(); }));
   EXPECT_TRUE(refused([](Refinement& r) { r.seconds = -1; }));

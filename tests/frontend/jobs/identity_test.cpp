@@ -82,6 +82,11 @@ TEST(Identity, NamesAllThatPixelsDependOn) {
   EXPECT_EQ(words([](RenderCommand& c, Camera&) { c.render.refine.samples = 7; }),
             "time=samples:7 no samples=, a has samples=1 no time=");
   EXPECT_EQ(words([](RenderCommand& c, Camera&) {
+              c.render.refine.error = .01;
+              c.render.refine.most = 64;
+            }),
+            "error=0.01 samples=64, a has samples=1 no error=");
+  EXPECT_EQ(words([](RenderCommand& c, Camera&) {
               c.render.subdivision = {true, .1f, 2};
             }),
             "adaptive=0.1,2, a has no adaptive=");

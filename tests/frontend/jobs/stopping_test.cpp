@@ -56,7 +56,10 @@ TEST_F(LongWork, SignalsStopItAndTheSameCommandGoesOn) {
     }
     EXPECT_GE(stopped, 1);
     EXPECT_EQ(folder_.read("x.pfm"), folder_.read("whole.pfm"));
-    EXPECT_FALSE(std::filesystem::exists(folder_.file("kept"))) << "done with";
+    const bool by_error = job.find("--error") != job.npos;
+    EXPECT_EQ(std::filesystem::exists(folder_.file("kept")), by_error)
+        << "done with, unless a finer error may go on";
+    std::filesystem::remove(folder_.file("kept"));
     std::filesystem::remove(folder_.file("x.pfm"));
   }
 }
@@ -141,7 +144,48 @@ TEST_F(LongWork, MapsAreThoseOfAnUndisturbedRun) {
     EXPECT_EQ(folder_.read("s.pfm"), samples);
     EXPECT_EQ(folder_.read("e.pfm"), error);
     std::filesystem::remove(folder_.file("full.pfm"));
+    std::filesystem::remove(folder_.file("kept"));
   }
+}
+
+/// From a finished picture, and from one that was stopped somewhere, to the bytes of a run that had
+/// this error from the beginning. What has other settings is refused.
+TEST_F(LongWork, AnotherErrorGoesOnFromACheckpoint) {
+  const std::string job = "render ball.nff --size 120x80 --lens 9 --threads 1 ";
+  const std::string fine = job + "--error .0003 ";
+  ASSERT_EQ(run(fine + "-o whole.pfm").status, 0);
+  ASSERT_EQ(run(job + "--error .02 -o coarse.pfm --checkpoint kept").status, 0);
+  ASSERT_EQ(run(job + "--error .02 -o again.pfm --checkpoint kept").status, 0);
+  EXPECT_EQ(folder_.read("again.pfm"), folder_.read("coarse.pfm"));
+  expect_line(run(fine + "--seed 1 -o x.pfm --checkpoint kept"),
+              2,
+              "grelha: error: --checkpoint: kept has error=0.02 seed=0, this render has "
+              "error=3e-04 seed=1: name another file, or remove this one to begin again");
+  ASSERT_EQ(run(fine + "-o x.pfm --checkpoint kept").status, 0);
+  EXPECT_EQ(folder_.read("x.pfm"), folder_.read("whole.pfm"));
+  std::filesystem::remove(folder_.file("kept"));
+  int stopped = 0;
+  for (double seconds = .03; stopped < 3 && seconds < 3; seconds *= 1.3) {
+    stopped += run(job + "--error .0005 -o x.pfm --checkpoint kept",
+                   "timeout --foreground --preserve-status -s INT " + std::to_string(seconds) + ' ')
+                   .status == 130;
+  }
+  ASSERT_EQ(run(fine + "-o x.pfm --checkpoint kept").status, 0);
+  EXPECT_EQ(folder_.read("x.pfm"), folder_.read("whole.pfm"));
+}
+
+/// The first limit ends a picture, and the program says which.
+TEST_F(LongWork, SaysWhatEndedAPicture) {
+  const std::string job = "render ball.nff --size 120x80 --lens 9 -o x.pfm ";
+  const auto ended = [&](const std::string& by) {
+    const Outcome outcome = run(job + by);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.out.substr(outcome.out.rfind("; ") + 2);
+  };
+  EXPECT_EQ(ended("--error .02 --samples 65536 --time 1000"), "ended by the error asked for\n");
+  EXPECT_EQ(ended("--error .0001 --samples 64"), "ended by the number of samples\n");
+  EXPECT_EQ(ended("--error .0001 --time samples:200000"), "ended by the number of samples\n");
+  EXPECT_EQ(ended("--error .000002 --time .2"), "ended by the time\n");
 }
 
 TEST_F(LongWork, TimeCountsOverRuns) {
