@@ -29,7 +29,7 @@ grelha_tests(kernel/query UNIT query any_size crossings rays
 grelha_tests(kernel/isa PROPERTY variants kinds LIBRARIES grelha::kernel)
 grelha_tests(kernel/shade UNIT shade bounces path_weight
   PROPERTY sampling pixel_box pixel_curve LIBRARIES grelha::kernel grelha_lane_functions)
-grelha_tests(kernel/picture IMAGE subdivision adaptive determinism fork refinement target_rays
+grelha_tests(kernel/picture IMAGE subdivision adaptive determinism fork refinement small_objects
   round_plan block_errors specks LIBRARIES grelha::frontend grelha::scenes)
 
 # The kernel refuses arithmetic that rounds only when it stores, as x87 does.

@@ -50,8 +50,6 @@ void check_samples(const Effects& e) {
 void check_refined(const RenderCommand& command) {
   const RefineOptions& r = command.render.refine;
   const Effects& e = command.effects;
-  if (r.seconds > 0 && r.samples > 0)
-    throw UsageError("--time: expected SECONDS or samples:N, found both");
   if (!r.on() && !(command.samples_map.empty() && command.error_map.empty()))
     throw UsageError("--samples-map and --error-map want --error or --time");
   if (!r.on())

@@ -221,6 +221,8 @@ void parse_error_bound(const std::string& text, RefineOptions& refine) {
 
 void parse_time(const std::string& text, RefineOptions& refine) {
   constexpr std::string_view kSamples = "samples:";
+  refine.seconds = 0;
+  refine.samples = 0;
   if (text.starts_with(kSamples)) {
     refine.samples = sample_count(text, kSamples.size());
     return;

@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "grelha/image.hpp"
+
 namespace grelha {
 
 /// Bytes of a large page.
@@ -58,6 +60,15 @@ Array array_to_fill(std::size_t n) {
   Array v;
   resize_to_fill(v, n);
   return v;
+}
+
+/// Image(width, height), all of which is written soon.
+inline Image image_to_fill(int width, int height) {
+  Image image;
+  image.width = width;
+  image.height = height;
+  resize_to_fill(image.rgb, static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3);
+  return image;
 }
 
 }  // namespace grelha

@@ -8,7 +8,7 @@
 #include "kernel/shade/guarded_progress.hpp"
 #include "kernel/shade/strips.hpp"
 #include "kernel/base/fork.hpp"
-#include "kernel/picture/image_to_fill.hpp"
+#include "kernel/base/pages.hpp"
 
 namespace grelha {
 namespace {

@@ -1,5 +1,4 @@
-#include "kernel/picture/adaptive_sampler.hpp"
-
+// Spends samples where they help most; refinement.hpp holds the state between runs.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -10,7 +9,6 @@
 #include <omp.h>
 
 #include "kernel/world/world_impl.hpp"
-#include "kernel/picture/target_rays.hpp"
 #include "kernel/picture/sampling_round.hpp"
 #include "kernel/picture/block_errors.hpp"
 #include "kernel/picture/tolerances.hpp"
@@ -21,8 +19,6 @@
 namespace grelha {
 namespace {
 
-/// Most that is told of a picture in work: a forecast may be too low.
-constexpr double kMostForecast = .99;
 /// Share that the first samples are taken to be before anything is known: half of a coarse
 /// picture, less the finer the error.
 constexpr double kFirstShare = .5, kErrorOfAll = 20;
@@ -95,12 +91,21 @@ class AdaptiveSampler {
     e.rounds = r_.rounds;
     e.samples = samples_;
     e.least = kMostSamples;
-    for (std::size_t b = 0; b < blocks_.count(); ++b) {
-      e.least = std::min(e.least, sample_count(r_, b));
-      e.most = std::max(e.most, sample_count(r_, b));
+    if (maps) {
+      maps->samples.resize(r_.box.size());
+      maps->error.resize(r_.box.size());
     }
-    if (maps)
-      fill(*maps);
+    for (std::size_t b = 0; b < blocks_.count(); ++b) {
+      const std::uint32_t samples = sample_count(r_, b);
+      e.least = std::min(e.least, samples);
+      e.most = std::max(e.most, samples);
+      blocks_.each_pixel(b, [&](std::size_t p) {
+        if (!maps)
+          return;
+        maps->samples[p] = samples;
+        maps->error[p] = std::sqrt(errors_.variance(b));
+      });
+    }
   }
 
  private:
@@ -124,7 +129,7 @@ class AdaptiveSampler {
     if (!r_.checking.empty())
       close_check(r_, samples_);
     else if (r_.rounds++ == 0)
-      target_small_objects(world_, setup_, stats_.threads, r_, stats_.trace);
+      mark_small_objects(world_, setup_.frame, r_);
     close_round(r_);
   }
 
@@ -132,16 +137,6 @@ class AdaptiveSampler {
   /// asked for is met all the same.
   double stated(double bound) const {
     return std::min(kBoundedLow * bound, std::max(bound, options_.refine.error));
-  }
-
-  void fill(SampleMaps& maps) const {
-    maps.samples.resize(static_cast<std::size_t>(r_.width) * static_cast<std::size_t>(r_.height));
-    maps.error.resize(maps.samples.size());
-    for (std::size_t b = 0; b < blocks_.count(); ++b)
-      blocks_.each_pixel(b, [&](std::size_t p) {
-        maps.samples[p] = sample_count(r_, b);
-        maps.error[p] = std::sqrt(errors_.variance(b));
-      });
   }
 
   bool resume() {

@@ -1,11 +1,9 @@
 #include "kernel/picture/picture.hpp"
 
 #include "grelha/render.hpp"
-#include "kernel/picture/adaptive_sampler.hpp"
 #include "kernel/picture/subdivision.hpp"
 #include "kernel/shade/strips.hpp"
 #include "kernel/base/fork.hpp"
-#include "kernel/shade/workspace.hpp"
 
 namespace grelha {
 namespace {
@@ -22,84 +20,13 @@ bool is_range(const Range& r, int most) {
   return r.begin >= 0 && r.begin < r.end && r.end <= most;
 }
 
-// Each question about a picture, asked of every kind: the same name, told apart by the state.
-
-bool advance_state(const World& world,
-                   const Camera& camera,
-                   const RenderOptions& options,
-                   Accumulator& a,
-                   RenderStats& stats,
-                   SampleMaps*,
-                   const ShouldContinue& should_continue) {
-  return accumulate(world, camera, options, a, stats, {}, should_continue);
-}
-bool advance_state(const World& world,
-                   const Camera& camera,
-                   const RenderOptions& options,
-                   Refinement& r,
-                   RenderStats& stats,
-                   SampleMaps* maps,
-                   const ShouldContinue& should_continue) {
-  return refine(world, camera, options, r, stats, maps, should_continue);
-}
-bool advance_state(const World& world,
-                   const Camera& camera,
-                   const RenderOptions& options,
-                   SubdivisionState& s,
-                   RenderStats& stats,
-                   SampleMaps*,
-                   const ShouldContinue& should_continue) {
-  return render_subdivided(world, camera, options, s, stats, should_continue);
-}
-
-int width_of(const Accumulator& a) {
-  return a.width;
-}
-int width_of(const Refinement& r) {
-  return r.width;
-}
-int width_of(const SubdivisionState& s) {
-  return s.image.width;
-}
-
-int height_of(const Accumulator& a) {
-  return a.height;
-}
-int height_of(const Refinement& r) {
-  return r.height;
-}
-int height_of(const SubdivisionState& s) {
-  return s.image.height;
-}
-
-double share_of(const Accumulator& a) {
-  return share_done(a);
-}
-double share_of(const Refinement& r) {
-  return r.share;
-}
-double share_of(const SubdivisionState& s) {
-  return s.share;
-}
-
-bool finished(const Accumulator& a) {
-  return is_complete(a);
-}
-bool finished(const Refinement& r) {
-  return r.finished;
-}
-bool finished(const SubdivisionState& s) {
-  return s.share == 1;
-}
-
-Image image_of(const Accumulator& a) {
-  return picture_so_far(a);
-}
-Image image_of(const Refinement& r) {
-  return picture_so_far(r);
-}
-Image image_of(const SubdivisionState& s) {
-  return s.image;
+/// What has the width and height of a picture.
+template <class State>
+const auto& sized(const State& state) {
+  if constexpr (requires { state.image; })
+    return state.image;
+  else
+    return state;
 }
 
 std::uint64_t samples_of(const Accumulator& a) {
@@ -116,23 +43,6 @@ std::uint64_t samples_of(const Refinement& r) {
 }
 std::uint64_t samples_of(const SubdivisionState&) {
   return 0;
-}
-
-Part part_of(const Accumulator& a) {
-  return a.part;
-}
-template <class State>
-Part part_of(const State& whole) {
-  return {{0, height_of(whole)}, {0, 1}};
-}
-
-bool numbers_are_valid(const Accumulator& a) {
-  return a.samples >= 1 && a.samples <= kMostSamples && is_range(a.part.rows, a.height) &&
-         is_range(a.part.samples, a.samples);
-}
-template <class State>
-bool numbers_are_valid(const State&) {
-  return true;
 }
 
 Picture make_picture(const Camera& camera, const RenderOptions& options, const Part& part) {
@@ -159,8 +69,13 @@ bool Picture::advance(const World& world,
                       SampleMaps* maps,
                       const ShouldContinue& should_continue) {
   bool done = false;
-  const auto advance_any = [&](auto& state) {
-    done = advance_state(world, camera, options, state, stats, maps, should_continue);
+  const auto advance_any = [&]<class State>(State& state) {
+    if constexpr (std::is_same_v<State, Accumulator>)
+      done = accumulate(world, camera, options, state, stats, {}, should_continue);
+    else if constexpr (std::is_same_v<State, Refinement>)
+      done = refine(world, camera, options, state, stats, maps, should_continue);
+    else
+      done = render_subdivided(world, camera, options, state, stats, should_continue);
   };
   run_fork_safe([&] { std::visit(advance_any, state_); });
   return done;
@@ -172,23 +87,37 @@ bool Picture::lift_limits() {
 }
 
 int Picture::width() const {
-  return std::visit([](const auto& state) { return width_of(state); }, state_);
+  return std::visit([](const auto& state) { return sized(state).width; }, state_);
 }
 
 int Picture::height() const {
-  return std::visit([](const auto& state) { return height_of(state); }, state_);
+  return std::visit([](const auto& state) { return sized(state).height; }, state_);
 }
 
 double Picture::share_done() const {
-  return std::visit([](const auto& state) { return share_of(state); }, state_);
+  const auto share = []<class State>(const State& state) {
+    if constexpr (std::is_same_v<State, Accumulator>)
+      return grelha::share_done(state);
+    else
+      return state.share;
+  };
+  return std::visit(share, state_);
 }
 
 bool Picture::is_finished() const {
-  return std::visit([](const auto& state) { return finished(state); }, state_);
+  const Refinement* const r = std::get_if<Refinement>(&state_);
+  return r ? r->finished : share_done() == 1;
 }
 
 Image Picture::image() const {
-  return std::visit([](const auto& state) { return image_of(state); }, state_);
+  return std::visit(
+      [](const auto& state) {
+        if constexpr (requires { state.image; })
+          return state.image;
+        else
+          return picture_so_far(state);
+      },
+      state_);
 }
 
 std::uint64_t Picture::total_samples() const {
@@ -201,7 +130,8 @@ std::string_view Picture::kind() const {
 }
 
 Part Picture::part() const {
-  return std::visit([](const auto& state) { return part_of(state); }, state_);
+  const Accumulator* const a = sums();
+  return a ? a->part : Part{{0, height()}, {0, 1}};
 }
 
 bool Picture::is_valid() const {
@@ -209,17 +139,10 @@ bool Picture::is_valid() const {
 }
 
 bool Picture::has_valid_numbers() const {
+  const Accumulator* const a = sums();
   return is_size(width(), height()) &&
-         std::visit([](const auto& state) { return numbers_are_valid(state); }, state_);
-}
-
-std::vector<Isa> isas() {
-  std::vector<Isa> out;
-  for (const std::string_view name : {"scalar", "sse2", "avx2", "avx512", "neon"}) {
-    const Variant* const v = find_variant(name);
-    out.push_back({name, v != nullptr, v != nullptr && v->is_supported()});
-  }
-  return out;
+         (!a || (a->samples >= 1 && a->samples <= kMostSamples &&
+                 is_range(a->part.rows, a->height) && is_range(a->part.samples, a->samples)));
 }
 
 Image render(const World& world,
@@ -230,13 +153,6 @@ Image render(const World& world,
   Picture picture(camera, options);
   picture.advance(world, camera, options, stats, maps);
   return picture.image();
-}
-
-std::uint64_t thread_bytes(const Camera& camera, const RenderOptions& options) {
-  const auto strips = static_cast<std::size_t>((camera.height + kStripRows - 1) / kStripRows);
-  const std::size_t sums = static_cast<std::size_t>(camera.width) * kStripRows;
-  const auto threads = static_cast<std::uint64_t>(thread_count(options, strips));
-  return threads * Workspace::bytes(sums, options.depth, options.sampling.glossy_rays);
 }
 
 }  // namespace grelha

@@ -34,24 +34,24 @@ inline std::size_t pixels_of(int width, int height) {
   return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
 }
 
-/// `State`, here and below: const to save it.
-template <class Archive, class State>
-requires std::is_same_v<std::remove_const_t<State>, Accumulator>
+/// A state: const to save it.
+template <class State, class Of>
+concept Any = std::is_same_v<std::remove_const_t<State>, Of>;
+
+template <class Archive, Any<Accumulator> State>
 void visit_numbers(Archive& archive, State& a) {
   archive.numbers(kKindOf<Accumulator>, a.width, a.height, a.samples);
   archive.numbers("rows", a.part.rows.begin, a.part.rows.end);
   archive.numbers("samples", a.part.samples.begin, a.part.samples.end);
 }
 
-template <class Archive, class State>
-requires std::is_same_v<std::remove_const_t<State>, Accumulator>
+template <class Archive, Any<Accumulator> State>
 void visit_arrays(Archive& archive, State& a) {
   archive.list(a.done, piece_count(a.part));
   archive.list(a.sums, pixels_of(a.width, a.part.rows.end - a.part.rows.begin) * 3);
 }
 
-template <class Archive, class State>
-requires std::is_same_v<std::remove_const_t<State>, Refinement>
+template <class Archive, Any<Refinement> State>
 void visit_numbers(Archive& archive, State& r) {
   int limit = static_cast<int>(r.limit);
   bool keeps = !r.before.empty();
@@ -86,8 +86,7 @@ void visit_samples(Archive& archive, State& r) {
     archive.values(b.block, b.claim, b.stands_for);
 }
 
-template <class Archive, class State>
-requires std::is_same_v<std::remove_const_t<State>, Refinement>
+template <class Archive, Any<Refinement> State>
 void visit_arrays(Archive& archive, State& r) {
   visit_samples(archive, r);
   for (auto& before : r.before) {
@@ -100,23 +99,18 @@ void visit_arrays(Archive& archive, State& r) {
   }
 }
 
-template <class Archive, class State>
-requires std::is_same_v<std::remove_const_t<State>, SubdivisionState>
+template <class Archive, Any<SubdivisionState> State>
 void visit_numbers(Archive& archive, State& s) {
   archive.numbers(kKindOf<SubdivisionState>, s.image.width, s.image.height);
 }
 
-template <class Archive, class State>
-requires std::is_same_v<std::remove_const_t<State>, SubdivisionState>
+template <class Archive, Any<SubdivisionState> State>
 void visit_arrays(Archive& archive, State& s) {
   archive.values(s.share);
   archive.list(s.image.rgb, pixels_of(s.image.width, s.image.height) * 3);
   archive.size(s.done, sizeof s.done[0]);
   archive.list(s.done, s.done.size());
 }
-
-// A picture in the making, whatever decides where its samples go: it is rendered bit by bit,
-// stopped, saved and gone on with, to the bits of one that was rendered in one go.
 
 /// The state of a picture between two pieces of its work: plain data, to be copied and saved. The
 /// options that it began with define it, and every call needs the same ones.

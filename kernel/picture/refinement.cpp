@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernel/picture/image_to_fill.hpp"
 #include "kernel/picture/tolerances.hpp"
 
 namespace grelha {
 namespace {
 
 bool all_from_0_on(const std::vector<float>& values) {
-  return std::all_of(
-      values.begin(), values.end(), [](float v) { return v >= 0 && std::isfinite(v); });
+  return std::ranges::all_of(values, [](float v) { return v >= 0 && std::isfinite(v); });
 }
 template <class T>
 bool lies(T value, T least, T most) {
@@ -31,8 +29,7 @@ bool are_distinct(const Blocks& blocks, std::size_t count) {
 }
 
 bool is_new(const Refinement& r) {
-  return r.rounds == 0 &&
-         std::all_of(r.log.begin(), r.log.end(), [](std::uint8_t l) { return l == 0; });
+  return r.rounds == 0 && std::ranges::count(r.log, 0) == std::ssize(r.log);
 }
 
 /// True if r.wanted lists blocks that can be doubled as often as their goals say, among them all
@@ -42,12 +39,9 @@ bool is_round(const Refinement& r) {
     return r.log[b] == 0 ? r.goal[b] == kFirstLog
                          : r.goal[b] <= kMostLog && lies(r.goal[b] - r.log[b], 1, kMostDoublings);
   };
-  const auto bare = std::count(r.log.begin(), r.log.end(), std::uint8_t{0});
-  return are_distinct(r.wanted, r.log.size()) &&
-         std::all_of(r.wanted.begin(), r.wanted.end(), can_take) &&
-         (is_new(r) || bare == std::count_if(r.wanted.begin(),
-                                             r.wanted.end(),
-                                             [&](std::uint32_t b) { return r.log[b] == 0; }));
+  const auto is_bare = [&](std::uint32_t b) { return r.log[b] == 0; };
+  return are_distinct(r.wanted, r.log.size()) && std::ranges::all_of(r.wanted, can_take) &&
+         (is_new(r) || std::ranges::count_if(r.wanted, is_bare) == std::ranges::count(r.log, 0));
 }
 
 /// True if the blocks of a check have samples, or nothing is checked.
@@ -56,7 +50,7 @@ bool is_check(const Refinement& r) {
   for (const CheckedBlock& c : r.checking)
     blocks.push_back(c.block);
   return are_distinct(blocks, r.log.size()) &&
-         std::all_of(r.checking.begin(), r.checking.end(), [&](const CheckedBlock& c) {
+         std::ranges::all_of(r.checking, [&](const CheckedBlock& c) {
            return r.log[c.block] > 0 && lies(c.claim, 0.f, 1e30f) && lies(c.stands_for, 0.f, 1e9f);
          });
 }
@@ -109,11 +103,9 @@ bool has_valid_arrays(const Refinement& r) {
   for (const auto& level : r.squares)
     if (!all_from_0_on(level))
       return false;
-  return std::all_of(r.sums.begin(), r.sums.end(), is_valid_sum) &&
-         std::all_of(r.log.begin(), r.log.end(), is_valid_log) &&
-         std::all_of(r.box.begin(), r.box.end(), is_valid_box) && all_from_0_on(r.missed) &&
-         all_from_0_on(r.cost) &&
-         std::all_of(r.cost.begin(), r.cost.end(), [](float c) { return c >= 1; });
+  return std::ranges::all_of(r.sums, is_valid_sum) && std::ranges::all_of(r.log, is_valid_log) &&
+         std::ranges::all_of(r.box, is_valid_box) && all_from_0_on(r.missed) &&
+         all_from_0_on(r.cost) && std::ranges::none_of(r.cost, [](float c) { return c < 1; });
 }
 
 /// True if what the picture was before is another of its size, between rounds.
@@ -127,28 +119,6 @@ bool is_before(const Refinement& r) {
 
 double CheckSums::ratio() const {
   return x > 0 ? std::clamp(y / x, kLeastErrorRatio, kMaxErrorRatio) : 1;
-}
-
-CheckSums operator*(double weight, const CheckSums& c) {
-  return {weight * c.y,
-          weight * c.x,
-          weight * c.yy,
-          weight * c.xy,
-          weight * c.xx,
-          weight * c.ny,
-          weight * c.nyny,
-          weight * c.count};
-}
-
-CheckSums operator+(const CheckSums& a, const CheckSums& b) {
-  return {a.y + b.y,
-          a.x + b.x,
-          a.yy + b.yy,
-          a.xy + b.xy,
-          a.xx + b.xx,
-          a.ny + b.ny,
-          a.nyny + b.nyny,
-          a.count + b.count};
 }
 
 Refinement make_refinement(const Camera& camera) {
@@ -179,6 +149,7 @@ bool lift_limits(Refinement& r) {
     Refinement before = std::move(r.before.front());
     r = std::move(before);
   }
+  r.share = std::min(r.share, kMostForecast);
   r.finished = false;
   r.limit = Limit::kNone;
   return true;

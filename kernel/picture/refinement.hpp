@@ -13,8 +13,10 @@
 #include "grelha/image.hpp"
 #include "grelha/render_options.hpp"
 #include "grelha/stats.hpp"
+#include "grelha/world.hpp"
 #include "kernel/base/pages.hpp"
 #include "kernel/scene/shading_view.hpp"
+#include "kernel/shade/guarded_progress.hpp"
 
 namespace grelha {
 
@@ -60,11 +62,9 @@ struct Blocks {
     }
   }
   std::size_t pixels(std::size_t block) const {
-    const auto c = static_cast<std::size_t>(columns);
-    const int x0 = static_cast<int>(block % c) * kBlockSide;
-    const int y0 = static_cast<int>(block / c) * kBlockSide;
-    return static_cast<std::size_t>(std::min(kBlockSide, width - x0)) *
-           static_cast<std::size_t>(std::min(kBlockSide, height - y0));
+    std::size_t count = 0;
+    each_pixel(block, [&](std::size_t) { ++count; });
+    return count;
   }
 
   /// All blocks, tile by tile: those that follow each other share packets and cells of grids.
@@ -82,10 +82,6 @@ struct Blocks {
     return order;
   }
 };
-
-// A picture whose samples are spent by error, see RefineOptions: rendered bit by bit, interrupted,
-// saved, gone on with, to the bits of one that was rendered in one go. docs/sampling.md has the
-// derivations.
 
 inline constexpr int kMostLog = 16;
 static_assert(1 << kMostLog == kMostSamples);
@@ -106,13 +102,16 @@ struct CheckSums {
   /// of blocks whose samples agreed, which claim nothing: n y, its square, pixels
   double ny = 0, nyny = 0, count = 0;
 
+  /// Gives all sums so far a weight.
+  void weigh(double weight) {
+    for (double* const sum : {&y, &x, &yy, &xy, &xx, &ny, &nyny, &count})
+      *sum *= weight;
+  }
   /// Factor of the variance over what blocks claim.
   double ratio() const;
   /// Variance of one sample where samples agree.
   double by_sample() const { return count > 0 ? ny / count : 0; }
 };
-CheckSums operator*(double weight, const CheckSums& c);
-CheckSums operator+(const CheckSums& a, const CheckSums& b);
 
 /// A block that a check doubles.
 struct CheckedBlock {
@@ -184,6 +183,17 @@ inline float mean_so_far(const Refinement& r, std::size_t i, std::uint32_t sampl
 
 /// A picture without samples.
 Refinement make_refinement(const Camera& camera);
+
+/// Goes on until the target is met, see Picture::advance(). Returns true if it is. `stats.error`
+/// and `maps`, where given, describe the picture so far; other counts are of this call. Throws like
+/// render().
+bool refine(const World& world,
+            const Camera& camera,
+            const RenderOptions& options,
+            Refinement& r,
+            RenderStats& stats,
+            SampleMaps* maps = nullptr,
+            const ShouldContinue& should_continue = {});
 
 /// True if the sizes of the arrays match and rendering can produce every number. Check a loaded
 /// file with this before going on with it.

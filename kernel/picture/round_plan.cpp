@@ -24,11 +24,17 @@ int most_log(const RefineOptions& asked) {
   return asked.most > 0 ? std::bit_width(static_cast<std::uint32_t>(asked.most)) - 1 : kMostLog;
 }
 
-/// One doubling of a block: its gain a ray, and what it takes off the sum of variances.
+double new_samples(const Refinement& r, std::size_t block, int log) {
+  return static_cast<double>((std::size_t{1} << log) * r.blocks().pixels(block));
+}
+
+/// One doubling of a block: its gain a ray, what it takes off the sum of variances, and the samples
+/// it adds.
 struct Step {
   float gain;
   std::uint32_t block;
   float drop;
+  double samples;
 };
 
 /// The next doublings of all blocks by falling gain. `capped`: some may not be taken.
@@ -44,7 +50,7 @@ std::vector<Step> next_steps(const Refinement& r,
     float drop = errors.variance(b) * (1 - ratio) * static_cast<float>(blocks.pixels(b));
     for (int k = 0; k < kMostDoublings && r.log[b] + k < kMostLog && gain > kLeastGain; ++k) {
       if (r.log[b] + k < most)
-        steps.push_back({gain, b, drop});
+        steps.push_back({gain, b, drop, new_samples(r, b, r.log[b] + k)});
       else
         capped = true;
       gain *= ratio / 2;
@@ -82,76 +88,59 @@ class Budget {
   double rays_ = std::numeric_limits<double>::infinity();
 };
 
-double new_samples(const Refinement& r, std::size_t block, int log) {
-  return static_cast<double>((std::size_t{1} << log) * r.blocks().pixels(block));
-}
-
 /// The steps that a round takes: the first so many, and the limit that ends them.
 struct Cut {
   std::size_t steps = 0;
   Limit limit = Limit::kNone;
+  double rays_to_error = 0;  ///< of the steps that the error asked for takes
 };
 
-/// Sets r.goal as well. `excess`: of the sum of variances over what the error asked for allows.
-Cut cut_steps(
-    Refinement& r, const std::vector<Step>& steps, double excess, Budget budget, double round) {
-  r.goal = r.log;
+/// `excess`: of the sum of variances over what the error asked for allows; `round`: most samples.
+Cut cut_steps(const Refinement& r,
+              const std::vector<Step>& steps,
+              double excess,
+              Budget budget,
+              double round) {
   Cut cut;
+  bool is_cut = false;
   for (const Step& s : steps) {
-    const double samples = new_samples(r, s.block, r.goal[s.block]);
-    if (!(excess > 0))
-      cut.limit = Limit::kError;
-    else if (samples > round)
+    if (!(excess > 0)) {
+      cut.limit = is_cut ? cut.limit : Limit::kError;
       break;
-    else
-      cut.limit = budget.take(samples, samples * static_cast<double>(r.cost[s.block]));
-    if (cut.limit != Limit::kNone)
-      break;
-    round -= samples;
+    }
+    const double rays = s.samples * static_cast<double>(r.cost[s.block]);
+    is_cut = is_cut || s.samples > round;
+    if (!is_cut) {
+      cut.limit = budget.take(s.samples, rays);
+      is_cut = cut.limit != Limit::kNone;
+    }
+    cut.steps += !is_cut;
+    round -= s.samples;
     excess -= static_cast<double>(s.drop);
-    ++r.goal[s.block];
-    ++cut.steps;
+    cut.rays_to_error += rays;
   }
   return cut;
 }
 
 /// Forecasts the rays of the whole picture.
-double forecast_rays(const Refinement& r,
-                     const std::vector<Step>& steps,
-                     double excess,
-                     const RefineOptions& asked,
-                     const Spent& spent) {
+double forecast_rays(const Refinement& r, double more, const RefineOptions& asked, Spent spent) {
   const auto rays = static_cast<double>(r.rays);
-  double all = std::numeric_limits<double>::infinity();
+  double all = asked.error > 0 ? (rays + more) * (1 + kMostChecked)
+                               : std::numeric_limits<double>::infinity();
   if (asked.seconds > 0)
-    all = rays * asked.seconds / spent.seconds;
+    all = std::min(all, rays * asked.seconds / spent.seconds);
   if (asked.samples > 0)
     all = std::min(all,
-                   rays * static_cast<double>(asked.samples) / static_cast<double>(spent.samples));
-  if (!(asked.error > 0))
-    return all;
-  double wanted = 0, left = excess;
-  List taken(r.log.size());
-  for (const Step& s : steps) {
-    if (!(left > 0))
-      break;
-    wanted += new_samples(r, s.block, r.log[s.block] + static_cast<int>(taken[s.block]++)) *
-              static_cast<double>(r.cost[s.block]);
-    left -= static_cast<double>(s.drop);
-  }
-  if (left > 0)  // what is left takes as many rays for its share
-    wanted *= excess / std::max(excess - left, .1 * excess);
-  return std::min(all, (rays + wanted) * (1 + kMostChecked));
+                   rays / static_cast<double>(spent.samples) * static_cast<double>(asked.samples));
+  return all;
 }
 
 /// From now on the picture depends on what was asked for.
 void set_limited(Refinement& r, const RefineOptions& asked) {
   if (r.limited)
     return;
-  if (asked.refinable) {
-    Refinement now = r;
-    r.before.push_back(std::move(now));
-  }
+  if (asked.refinable)
+    r.before = {r};
   r.limited = true;
 }
 
@@ -174,9 +163,9 @@ bool plan_round(Refinement& r,
       asked.error > 0 ? totals.sum * (1 - aim * aim) : std::numeric_limits<double>::infinity();
   bool capped = false;
   const std::vector<Step> steps = next_steps(r, errors, most_log(asked), capped);
-  r.forecast = forecast_rays(r, steps, excess, asked, spent);
   const Cut cut = cut_steps(
       r, steps, excess, Budget(asked, spent, r.rays), kGrowth * static_cast<double>(spent.samples));
+  r.forecast = forecast_rays(r, cut.rays_to_error, asked, spent);
   if (cut.limit != Limit::kError)
     r.limit = cut.limit;
   if (cut.steps == 0) {
@@ -186,6 +175,9 @@ bool plan_round(Refinement& r,
   }
   if (capped || cut.limit != Limit::kNone)
     set_limited(r, asked);
+  r.goal = r.log;
+  for (std::size_t i = 0; i < cut.steps; ++i)
+    ++r.goal[steps[i].block];
   std::copy_if(order.begin(), order.end(), std::back_inserter(r.wanted), [&](std::uint32_t b) {
     return r.goal[b] > r.log[b];
   });
@@ -267,8 +259,7 @@ double half_squares(const Refinement& r, std::uint32_t block) {
   return sum;
 }
 
-CheckSums sums_of_check(const Refinement& r) {
-  CheckSums sums;
+void add_check(const Refinement& r, CheckSums& sums) {
   for (const CheckedBlock& c : r.checking) {
     const bool agreed = c.claim == 0;
     // of the variance that new samples take off, to all of it
@@ -290,7 +281,6 @@ CheckSums sums_of_check(const Refinement& r) {
     sums.xy += x * y;
     sums.xx += x * x;
   }
-  return sums;
 }
 
 }  // namespace
@@ -340,7 +330,8 @@ bool plan_check(Refinement& r,
 
 void close_check(Refinement& r, std::uint64_t samples) {
   // what a check finds where nothing seemed wrong may rest on a hit or two
-  r.checked = (r.repeats == 0 ? .5 : 1) * r.checked + sums_of_check(r);
+  r.checked.weigh(r.repeats == 0 ? .5 : 1);
+  add_check(r, r.checked);
   r.checking.clear();
   r.checked_at = samples;
   ++r.checks;

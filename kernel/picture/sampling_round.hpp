@@ -11,6 +11,7 @@
 #include "kernel/picture/refinement.hpp"
 #include "kernel/scene/shading_view.hpp"
 #include "kernel/shade/strips.hpp"
+#include "kernel/world/world_impl.hpp"
 
 namespace grelha {
 
@@ -63,6 +64,12 @@ void close_check(Refinement& r, std::uint64_t samples);
 int doublings(const Refinement& r, std::size_t block);
 /// Samples that it gives each pixel of a block.
 std::uint32_t new_count(const Refinement& r, std::size_t block);
+
+/// Projects spheres, cones and small meshes that look thinner than a pixel into a picture, as the
+/// eye sees them straight and in flat mirrors, whatever stands before them: samples may have missed
+/// them. Their pixels get boxes that later samples favour; until then r.missed holds the variances
+/// that the objects may add to blocks.
+void mark_small_objects(const World::Impl& world, const FrameView& frame, Refinement& r);
 
 /// Cuts the wanted blocks into chunks. After an interruption between two chunks, the rest of the
 /// round is cut into the same chunks as without it: the cost of a sample is measured by chunk.

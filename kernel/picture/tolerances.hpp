@@ -57,4 +57,7 @@ inline constexpr int kMostRepeats = 3;
 /// Most of a picture that a check samples again.
 inline constexpr double kMostChecked = 1. / 16;
 
+/// Most that is told of a picture in work: a forecast may be too low.
+inline constexpr double kMostForecast = .99;
+
 }  // namespace grelha

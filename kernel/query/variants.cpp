@@ -3,6 +3,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "grelha/isa.hpp"
+
 namespace grelha {
 
 // A macro for each copy that the build compiles. __builtin_cpu_supports also asks whether the
@@ -144,6 +146,15 @@ const Variant& choose_variant(std::string_view name) {
   if (!v->is_supported())
     throw std::invalid_argument("this processor has no " + std::string(name));
   return *v;
+}
+
+std::vector<Isa> isas() {
+  std::vector<Isa> out;
+  for (const std::string_view name : {"scalar", "sse2", "avx2", "avx512", "neon"}) {
+    const Variant* const v = find_variant(name);
+    out.push_back({name, v != nullptr, v != nullptr && v->is_supported()});
+  }
+  return out;
 }
 
 }  // namespace grelha

@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "grelha/render.hpp"
 #include "kernel/base/hash.hpp"
 #include "kernel/shade/workspace.hpp"
 #include "kernel/world/world_impl.hpp"
@@ -283,6 +284,13 @@ void render_strips(const World::Impl& world,
 #pragma omp critical(grelha_stats)
     add_counts(mine, stats);
   }
+}
+
+std::uint64_t thread_bytes(const Camera& camera, const RenderOptions& options) {
+  const auto strips = static_cast<std::size_t>((camera.height + kStripRows - 1) / kStripRows);
+  const std::size_t sums = static_cast<std::size_t>(camera.width) * kStripRows;
+  const auto threads = static_cast<std::uint64_t>(thread_count(options, strips));
+  return threads * Workspace::bytes(sums, options.depth, options.sampling.glossy_rays);
 }
 
 }  // namespace grelha

@@ -125,11 +125,12 @@ def reference_settings(options, samples, seed):
 
 
 def time_to_reach(curve, error):
-    """Of points with `rmse` and `seconds`: between the two on either side of `error`, on straight
-    lines of the log-log chart; None beyond its ends."""
-    curve = sorted((math.log(p["rmse"]), math.log(p["seconds"])) for p in curve if p["rmse"] > 0)
+    """Of points with `rmse` and `seconds`: by the last two neighbours in time on either side of
+    `error`, on straight lines of the log-log chart; None where there are none. The last: a sample
+    that misses what is small looks as good as a thousand."""
+    curve = sorted((math.log(p["seconds"]), math.log(p["rmse"])) for p in curve if p["rmse"] > 0)
     at = math.log(error)
-    for (e0, t0), (e1, t1) in zip(curve, curve[1:]):
-        if e0 <= at <= e1 and e1 > e0:
+    for (t0, e0), (t1, e1) in reversed(list(zip(curve, curve[1:]))):
+        if e0 != e1 and min(e0, e1) <= at <= max(e0, e1):
             return math.exp(t0 + (t1 - t0) * (at - e0) / (e1 - e0))
     return None

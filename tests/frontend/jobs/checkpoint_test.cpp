@@ -5,7 +5,7 @@
 #include "frontend/files/digest.hpp"
 #include "frontend/files/parse_error.hpp"
 #include "frontend/jobs/checkpoint.hpp"
-#include "kernel/picture/adaptive_sampler.hpp"
+#include "kernel/picture/refinement.hpp"
 #include "kernel/picture/picture.hpp"
 #include "tests/frontend/jobs/job.hpp"
 #include "tests/support/random.hpp"

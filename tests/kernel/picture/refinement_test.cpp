@@ -6,7 +6,6 @@
 
 #include "frontend/input/effects.hpp"
 #include "frontend/nff/nff_reader.hpp"
-#include "kernel/picture/adaptive_sampler.hpp"
 #include "kernel/picture/refinement.hpp"
 #include "scenes/generators.hpp"
 #include "tests/support/rays.hpp"

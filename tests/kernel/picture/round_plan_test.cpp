@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "kernel/picture/adaptive_sampler.hpp"
+#include "kernel/picture/refinement.hpp"
 #include "tests/support/rays.hpp"
 #include "tests/support/scenes.hpp"
 
