@@ -47,9 +47,7 @@ double least_cosine(double most_deg) {
 class Smoother {
  public:
   Smoother(Triangles& triangles, std::uint32_t first, double most_deg)
-      : t_(triangles), first_(first), least_(least_cosine(most_deg)), base_(t_.vertex_count()) {
-    for (std::uint32_t k = 0; k < corner_count(); ++k)
-      base_ = std::min<std::size_t>(base_, vertex(k));
+      : t_(triangles), first_(first), least_(least_cosine(most_deg)) {
     for (auto* of : {&t_.nx, &t_.ny, &t_.nz})
       of->resize(t_.vertex_count());
   }
@@ -66,16 +64,13 @@ class Smoother {
     return (corner % 3 == 0 ? t_.a : corner % 3 == 1 ? t_.b : t_.c)[first_ + corner / 3];
   }
 
-  std::uint32_t corner_count() const { return std::uint32_t(3 * (t_.size() - first_)); }
-  std::uint32_t& place_of(std::uint32_t vertex) { return place_[vertex - base_]; }
-
   /// Finds one vertex for all in its place: many programs write three for each triangle.
   void join_places() {
     std::vector<std::uint32_t> used;
-    has_normal_.assign(t_.vertex_count() - base_, true);
-    for (std::uint32_t k = 0; k < corner_count(); ++k)
-      if (const std::uint32_t v = vertex(k); has_normal_[v - base_]) {
-        has_normal_[v - base_] = false;
+    has_normal_.assign(t_.vertex_count(), true);
+    for (std::uint32_t k = 0; k < 3 * (t_.size() - first_); ++k)
+      if (const std::uint32_t v = vertex(k); has_normal_[v]) {
+        has_normal_[v] = false;
         used.push_back(v);
       }
     const auto bits = [](float c) { return std::bit_cast<std::uint32_t>(c + 0.f); };  // no -0
@@ -85,22 +80,23 @@ class Smoother {
     std::ranges::sort(used, [&](std::uint32_t v, std::uint32_t w) {
       return at(v) < at(w) || (at(v) == at(w) && v < w);
     });
-    place_.resize(t_.vertex_count() - base_);
+    place_.resize(t_.vertex_count());
     for (std::size_t i = 0; i < used.size(); ++i)
-      place_of(used[i]) = i > 0 && at(used[i]) == at(used[i - 1]) ? place_of(used[i - 1]) : used[i];
+      place_[used[i]] = i > 0 && at(used[i]) == at(used[i - 1]) ? place_[used[i - 1]] : used[i];
   }
 
   /// Lists the corners at each place, in their order.
   void sort_corners() {
-    begin_.assign(t_.vertex_count() - base_ + 1, 0);
-    for (std::uint32_t k = 0; k < corner_count(); ++k)
-      ++begin_[place_of(vertex(k)) - base_ + 1];
+    const auto count = std::uint32_t(3 * (t_.size() - first_));
+    begin_.assign(t_.vertex_count() + 1, 0);
+    for (std::uint32_t k = 0; k < count; ++k)
+      ++begin_[place_[vertex(k)] + 1];
     for (std::size_t v = 1; v < begin_.size(); ++v)
       begin_[v] += begin_[v - 1];
     std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
-    corners_.resize(corner_count());
-    for (std::uint32_t k = 0; k < corner_count(); ++k)
-      corners_[next[place_of(vertex(k)) - base_]++] = k;
+    corners_.resize(count);
+    for (std::uint32_t k = 0; k < count; ++k)
+      corners_[next[place_[vertex(k)]]++] = k;
   }
 
   void smooth_place(std::span<const std::uint32_t> corners) {
@@ -139,9 +135,9 @@ class Smoother {
     const auto has = [&](std::size_t at) {
       return Float3{t_.nx[at], t_.ny[at], t_.nz[at]} == normal;
     };
-    if (!has_normal_[v - base_])
+    if (!has_normal_[v])
       set(v, normal);
-    has_normal_[v - base_] = true;
+    has_normal_[v] = true;
     if (has(v))
       return v;
     std::size_t at = t_.vertex_count() - copy_of_.size();
@@ -167,9 +163,8 @@ class Smoother {
   Triangles& t_;
   const std::uint32_t first_;
   const double least_;
-  std::size_t base_;                  ///< the first vertex
-  std::vector<bool> has_normal_;      ///< [vertices before, from the first]
-  std::vector<std::uint32_t> place_;  ///< [the same] the first in the same place
+  std::vector<bool> has_normal_;      ///< [vertices before]
+  std::vector<std::uint32_t> place_;  ///< [vertices before] the first in the same place
   std::vector<std::uint32_t> begin_, corners_;
   std::vector<Corner> around_;
   std::vector<std::uint32_t> own_, copy_of_;  ///< corners at a place; what its copies are of

@@ -85,7 +85,8 @@ class SceneBuilder {
                           std::span<const std::uint32_t> materials);
   std::vector<std::uint32_t> materials_of(const Mesh& mesh, std::size_t count, std::uint32_t of);
   void points(const Mesh& mesh, std::uint32_t material);
-  CrossedFaces object(Mesh mesh, std::uint32_t material);
+  CrossedFaces object(Mesh mesh, std::uint32_t material, bool smooth);
+  void smooth_solids(std::span<NamedObject> solids);
   Result mesh_face(std::span<const std::uint32_t> corner_points,
                    std::uint32_t first_vertex,
                    std::uint32_t material);

@@ -197,7 +197,7 @@ CrossedFaces SceneBuilder::mesh(Mesh mesh, std::uint32_t material) {
     return {};
   }
   if (mesh.solids.empty())
-    return object(std::move(mesh), material);
+    return object(std::move(mesh), material, options_.smooth_deg > 0);
   CrossedFaces crossed;
   std::uint64_t faces = 0;
   const Triangles& t = file_.scene.geometry.triangles;
@@ -205,17 +205,51 @@ CrossedFaces SceneBuilder::mesh(Mesh mesh, std::uint32_t material) {
   for (const Solid& solid : mesh.solids) {
     const auto first_triangle = std::uint32_t(t.size()),
                first_vertex = std::uint32_t(t.vertex_count());
-    crossed.add(object(solids.next(solid), material), faces);
+    crossed.add(object(solids.next(solid), material, false), faces);
     faces += solid.faces;
     const Object own{first_triangle, std::uint32_t(t.size()) - first_triangle};
     if (own.triangle_count == 0)
       file_.scene.geometry.objects.push_back(own);
     file_.solids.push_back({solid.name, solid.faces, own, first_vertex});
   }
+  if (options_.smooth_deg > 0)
+    smooth_solids(std::span(file_.solids).last(mesh.solids.size()));
   return crossed;
 }
 
-CrossedFaces SceneBuilder::object(Mesh mesh, std::uint32_t material) {
+/// Smooths over the seams between solids. What that doubles are the last vertices: they move behind
+/// those of their solid.
+void SceneBuilder::smooth_solids(std::span<NamedObject> solids) {
+  Triangles& t = file_.scene.geometry.triangles;
+  const auto first = solids.front().first_vertex, end = std::uint32_t(t.vertex_count());
+  smooth_normals(t, solids.front().triangles.first_triangle, options_.smooth_deg);
+  std::vector<std::uint32_t> order, moved(t.vertex_count() - first, 0);
+  const auto put = [&](std::uint32_t vertex) {
+    order.push_back(vertex);
+    moved[vertex - first] = first + std::uint32_t(order.size()) - 1;
+  };
+  for (std::size_t s = 0; s < solids.size(); ++s) {
+    const std::uint32_t begin = solids[s].first_vertex;
+    solids[s].first_vertex = first + std::uint32_t(order.size());
+    for (std::uint32_t v = begin; v < (s + 1 < solids.size() ? solids[s + 1].first_vertex : end);
+         ++v)
+      put(v);
+    const Object& own = solids[s].triangles;
+    for (std::uint32_t i = own.first_triangle; i < own.first_triangle + own.triangle_count; ++i)
+      for (auto* const corner : {&t.a, &t.b, &t.c}) {
+        if ((*corner)[i] >= end && moved[(*corner)[i] - first] == 0)
+          put((*corner)[i]);
+        (*corner)[i] = moved[(*corner)[i] - first];
+      }
+  }
+  for (auto* const of : {&t.x, &t.y, &t.z, &t.nx, &t.ny, &t.nz, &t.red, &t.green, &t.blue}) {
+    const std::vector<float> before = *of;
+    for (std::size_t i = 0; i < order.size() && !of->empty(); ++i)
+      (*of)[first + i] = before[order[i]];
+  }
+}
+
+CrossedFaces SceneBuilder::object(Mesh mesh, std::uint32_t material, bool smooth) {
   Triangles& t = file_.scene.geometry.triangles;
   const auto first_vertex = std::uint32_t(t.vertex_count()),
              first_triangle = std::uint32_t(t.size());
@@ -227,7 +261,7 @@ CrossedFaces SceneBuilder::object(Mesh mesh, std::uint32_t material) {
     bad[i] = true;
     mesh.x[i] = mesh.y[i] = mesh.z[i] = 0;
   }
-  const bool smooth = options_.smooth_deg > 0 && mesh.nx.empty();
+  const bool has_normals = !mesh.nx.empty();
   append_vertices(mesh);
   const std::vector<std::uint32_t> materials =
       materials_of(mesh, mesh.colors_of_faces ? mesh.face_count() : 0, material);
@@ -245,7 +279,7 @@ CrossedFaces SceneBuilder::object(Mesh mesh, std::uint32_t material) {
     mesh_triangles(mesh.indices, first_vertex, material);
   else
     crossed = mesh_faces(mesh, bad, first_vertex, material, materials);
-  if (smooth)
+  if (smooth && !has_normals)
     smooth_normals(t, first_triangle, options_.smooth_deg);
   const auto count = std::uint32_t(t.size()) - first_triangle;
   if (count > 0)

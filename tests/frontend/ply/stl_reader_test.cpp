@@ -1,11 +1,15 @@
 // STL, binary and text, against PLY files of the same meshes.
 #include "frontend/ply/mesh_file.hpp"
 
+#include <array>
+#include <cmath>
 #include <cstring>
+#include <numbers>
 
 #include "frontend/input/read_scene.hpp"
 #include "frontend/input/view.hpp"
 #include "frontend/jobs/identity.hpp"
+#include "grelha/mesh_check.hpp"
 #include "tests/support/random.hpp"
 #include "tests/support/reading.hpp"
 
@@ -217,6 +221,21 @@ TEST(Stl, LoopsAndSolids) {
   EXPECT_EQ(faces("solid a\nendsolid a\n"), std::pair(0ul, 0ul));
 }
 
+/// Triangles of a solid have the vertices from its first up to the next solid's.
+void expect_own_vertices(const SceneFile& file) {
+  const Triangles& t = file.scene.geometry.triangles;
+  std::size_t end = t.vertex_count();
+  for (std::size_t k = file.solids.size(); k-- > 0;) {
+    const NamedObject& solid = file.solids[k];
+    for (std::uint32_t i = 0; i < solid.triangles.triangle_count; ++i)
+      for (const auto* corner : {&t.a, &t.b, &t.c}) {
+        const std::uint32_t v = (*corner)[solid.triangles.first_triangle + i];
+        EXPECT_TRUE(v >= solid.first_vertex && v < end) << v << " of solid " << k;
+      }
+    end = solid.first_vertex;
+  }
+}
+
 /// Solids are objects with names and vertices of their own, smooth or not, also where they are read
 /// by a scene; those without a facet are none.
 TEST(Stl, SolidsHaveNames) {
@@ -239,7 +258,6 @@ TEST(Stl, SolidsHaveNames) {
         if (in_scene)
           path = folder.add("s.nff", kView + kFill + "ply m.stl\n");
         const SceneFile file = read_scene(path, nullptr, {.meshes = {.smooth_deg = smooth}});
-        const Triangles& t = file.scene.geometry.triangles;
         ASSERT_EQ(file.solids.size(), 4u) << bytes;
         ASSERT_EQ(file.scene.geometry.objects.size(), 4u);
         const std::pair<const char*, std::uint64_t> expected[] = {
@@ -251,14 +269,58 @@ TEST(Stl, SolidsHaveNames) {
                     std::pair(std::string(expected[k].first), expected[k].second));
           EXPECT_EQ(solid.triangles.triangle_count, triangles[k]);
           EXPECT_EQ(file.scene.geometry.objects[k].first_triangle, solid.triangles.first_triangle);
-          const std::size_t end = k < 3 ? file.solids[k + 1].first_vertex : t.vertex_count();
-          for (std::uint32_t i = 0; i < triangles[k]; ++i)
-            for (const auto* corner : {&t.a, &t.b, &t.c}) {
-              const std::uint32_t v = (*corner)[solid.triangles.first_triangle + i];
-              EXPECT_TRUE(v >= solid.first_vertex && v < end) << v;
-            }
         }
+        expect_own_vertices(file);
       }
+}
+
+/// A ball, each ring of which begins with `ring_begins`.
+std::string ball_of(const std::string& ring_begins) {
+  constexpr int kRings = 12;
+  const auto vertex = [](int ring, int side) {
+    const double polar = std::numbers::pi * ring / kRings,
+                 around = std::numbers::pi * (side % (2 * kRings)) / kRings;
+    const double r = ring % kRings == 0 ? 0 : std::sin(polar);
+    return "vertex " +
+           place(
+               {float(r * std::cos(around)), float(r * std::sin(around)), float(std::cos(polar))}) +
+           '\n';
+  };
+  std::string text;
+  for (int ring = 0; ring < kRings; ++ring) {
+    text += ring_begins;
+    for (int side = 0; side < 2 * kRings; ++side) {
+      const std::string from = "facet\nouter loop\n" + vertex(ring, side), to = "endfacet\n";
+      if (ring < kRings - 1)
+        text += from + vertex(ring + 1, side) + vertex(ring + 1, side + 1) + to;
+      if (ring > 0)
+        text += from + vertex(ring + 1, side + 1) + vertex(ring, side + 1) + to;
+    }
+  }
+  return text;
+}
+
+/// A ball of patches, as programs of flow write it, is as smooth as one of one solid, and closed.
+TEST(Stl, SmoothsOverSeams) {
+  const TemporaryFolder folder;
+  for (const double degrees : {10., 40.}) {
+    std::vector<std::vector<float>> corners;
+    for (const std::string& text : {ball_of(""), ball_of("solid ring\n")}) {
+      const SceneFile file =
+          read_scene(folder.add("ball.stl", text), nullptr, {.meshes = {.smooth_deg = degrees}});
+      EXPECT_TRUE(check_mesh(file.scene).is_closed());
+      expect_own_vertices(file);
+      const Triangles& t = file.scene.geometry.triangles;
+      corners.emplace_back();
+      for (std::size_t i = 0; i < t.size(); ++i)
+        for (const auto* corner : {&t.a, &t.b, &t.c})
+          for (const auto* of : {&t.x, &t.y, &t.z, &t.nx, &t.ny, &t.nz})
+            corners.back().push_back((*of)[(*corner)[i]]);
+    }
+    ASSERT_EQ(corners[0].size(), corners[1].size());
+    for (std::size_t i = 0; i < corners[0].size(); ++i)
+      EXPECT_NEAR(corners[0][i], corners[1][i], 1e-6) << "sums may be in another order";
+  }
 }
 
 /// By its bytes, whatever it is called; other names are not mistaken.
