@@ -11,7 +11,7 @@
 namespace grelha {
 namespace {
 
-constexpr std::uint16_t kFlag = 0x8000, kMost = 31;
+constexpr std::uint16_t kFlag = 0x8000, kBrightest = 31;
 
 /// Four bytes behind a key of the header, which has a value of `size` bytes: red, green, blue,
 /// alpha. None where that value is missing, or all zeros.
@@ -32,7 +32,7 @@ std::optional<std::array<unsigned char, 4>> color_behind(std::string_view key,
 /// Of 15 bits, red the lowest five.
 Float3 color_of(std::uint16_t word) {
   const auto channel = [word](int shift) {
-    return light_of_byte((word >> shift & kMost) * 255. / kMost);
+    return light_of_byte((word >> shift & kBrightest) * 255. / kBrightest);
   };
   return {channel(0), channel(5), channel(10)};
 }
