@@ -284,7 +284,7 @@ class Pictures(unittest.TestCase):
             cloud, mesh = (os.path.join(folder, name) for name in ("cloud.ply", "mesh.ply"))
             pathlib.Path(cloud).write_text(ply(vertices, []))
             pathlib.Path(mesh).write_text(ply(vertices, faces))
-            self.assertIn("empty", str(grelha.read(cloud)))
+            self.assertIn(f"{len(vertices)} spheres", str(grelha.read(cloud)))
             balls = grelha.read(cloud, points=0.125).world
             self.assertIn(f"{len(vertices)} spheres", str(balls))
             self.assertAlmostEqual(balls.closest((0, 0, 3), (0, 0, -1)).t, 2 - 0.125, 6)
