@@ -50,8 +50,6 @@ def kill_and_resume(options, folder):
     alone = time.monotonic() - begin
     killed = resumed = 0
     for turn in range(rounds):
-        if os.path.exists(checkpoint):  # kept for a finer error
-            os.remove(checkpoint)
         for attempt in range(200):
             resumed += os.path.exists(checkpoint)
             run = subprocess.Popen(command + options + [
@@ -74,9 +72,11 @@ def kill_and_resume(options, folder):
             subprocess.run(command + repeatable(options, stats) + ["-o", whole], check=True)
         if read(whole) != read(picture):
             sys.exit(f"{where}: another picture")
-        if os.path.exists(checkpoint):
-            sys.exit(f"{where}: the checkpoint is still there")
-        os.remove(picture), os.remove(stats)
+        if os.path.exists(checkpoint) != ("--error" in options):  # a finer error goes on from it
+            sys.exit(f"{where}: the checkpoint is {'gone' if '--error' in options else 'there'}")
+        for file in (picture, stats, checkpoint):
+            if os.path.exists(file):
+                os.remove(file)
         left = [
             n for n in os.listdir(folder)
             if n != "whole.pfm" and not n.endswith(".grelha-tmp")]

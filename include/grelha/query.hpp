@@ -100,7 +100,10 @@ struct SurfacePoint {
   /// unit shading normal, on the same side: interpolated vertex normals if the triangle has them,
   /// else `normal`
   Float3 shading;
-  float offset;            ///< distance along the normal where a point is certainly off the surface
+  union {
+    float offset;  ///< distance along the normal where a point is certainly off the surface
+    float away;    ///< the same by its former name, for one version more
+  };
   std::uint32_t material;  ///< index into the scene's materials
   /// Returns the origin of a ray that leaves the surface in direction `dir`, to be traced with
   /// t_min = 0. The ray does not hit this surface again if it points away from it. It misses
@@ -108,6 +111,10 @@ struct SurfacePoint {
   /// Jakob and Humphreys, PBR 4th ed., 6.8. A shadow ray starts at this origin, its direction is
   /// the light's position minus this origin, and its t_max is 1.
   Float3 start(Float3 dir) const;
+  /// The same by a former name, for one version more.
+  [[deprecated("use start()")]] Float3 offset_origin(Float3 dir) const { return start(dir); }
+  /// The same by a former name, for one version more.
+  [[deprecated("use start()")]] Float3 leave(Float3 dir) const { return start(dir); }
 };
 
 /// Computes the surface point of a `hit` that closest() returned for `ray`. Throws

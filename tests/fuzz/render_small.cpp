@@ -82,9 +82,11 @@ void render_small(SceneFile file, Choices choices) {
     return;
   scene_digest(file);
   RenderOptions options;
-  const Effects effects = some_effects(choices);
-  if (!effects.adaptive.on && choices.below(8) == 0)
+  Effects effects = some_effects(choices);
+  if (!effects.adaptive.on && choices.below(8) == 0) {
     options.refine.samples = kSide * kSide * 12;
+    effects.samples.reset();  // the most of a pixel, then
+  }
   apply_effects(effects, file, options);
   file.camera.width = file.camera.height = kSide;
   options.depth = 1 + int(choices.below(5));
