@@ -23,6 +23,7 @@ FAULTS = [
     adaptive("one difference too few of the old", "kOld", "7", "6", "*.EstimateThe*"),
     adaptive("none agree", "kAgreement", ".005f", "0", "*SeeASample*"),
     adaptive("too many agree", "kAgreement", ".005f", ".02f", "*SeeASample*"),
+    adaptive("every block for itself", "kEnoughHits", "16", "0", "*.PoolRareHits"),
     adaptive("any blocks alike", "kAlike", "3", "300", "*.LendNothing*"),
     adaptive("no blocks alike", "kAlike", "3", "0", "*.PoolRareHits"),
     adaptive("edges that lend", "kMinHits", "3", "30", "*.LendNothing*"),

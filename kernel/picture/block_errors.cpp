@@ -89,13 +89,13 @@ bool BlockErrors::agrees(std::size_t b) const {
 /// Sums of a block with few hits and of the blocks around it that have few and may show the same
 /// surface: means differ by no more than chance explains if samples hit as often as in the block
 /// with most hits.
-BlockErrors::Sums BlockErrors::pool_of(std::size_t b) const {
+BlockErrors::Sums BlockErrors::pool_within(int reach, std::size_t b) const {
   const Sums& mine = sums_[b];
   const auto columns = static_cast<std::size_t>(blocks_.columns);
   const int x = static_cast<int>(b % columns), y = static_cast<int>(b / columns);
   const auto each = [&](const auto& visit) {
-    for (int j = std::max(y - 1, 0); j <= std::min(y + 1, blocks_.rows - 1); ++j)
-      for (int i = std::max(x - 1, 0); i <= std::min(x + 1, blocks_.columns - 1); ++i) {
+    for (int j = std::max(y - reach, 0); j <= std::min(y + reach, blocks_.rows - 1); ++j)
+      for (int i = std::max(x - reach, 0); i <= std::min(x + reach, blocks_.columns - 1); ++i) {
         const Sums& s = sums_[static_cast<std::size_t>(j) * columns + static_cast<std::size_t>(i)];
         if (s.has_few_hits())
           visit(s);
@@ -103,8 +103,6 @@ BlockErrors::Sums BlockErrors::pool_of(std::size_t b) const {
   };
   float by_sample = 0;
   each([&](const Sums& s) { by_sample = std::max(by_sample, s.by_sample()); });
-  if (!(by_sample > 0))
-    return mine;
   Sums pool{};
   each([&](const Sums& s) {
     float difference = 0;
@@ -115,13 +113,15 @@ BlockErrors::Sums BlockErrors::pool_of(std::size_t b) const {
     if (difference <= 3 * kAlike * kAlike * by_sample * (1 / mine.samples + 1 / s.samples))
       pool += s;
   });
-  return pool;
+  return by_sample > 0 ? pool : mine;
 }
 
 /// Variance of a block with few hits.
 float BlockErrors::rare_variance(std::size_t b, float& certainty) const {
   const Sums& mine = sums_[b];
-  const Sums pool = pool_of(b);
+  Sums pool = pool_within(kNear, b);
+  if (pool.certainty() < kEnoughHits)
+    pool = pool_within(kFar, b);
   certainty = pool.certainty();
   if (pool.pixels == mine.pixels)
     return own_variance(mine.levels) / mine.pixels;

@@ -57,7 +57,7 @@ class BlockErrors {
   void measure_pixel(std::size_t p, int log, Sums& sums) const;
   float freedom(int log) const { return log == kFirstLog ? kYoung : kOld; }
   float own_variance(const float (&levels)[3]) const;
-  Sums pool_of(std::size_t b) const;
+  Sums pool_within(int reach, std::size_t b) const;
   float rare_variance(std::size_t b, float& certainty) const;
   float gain_of(std::size_t b, float variance) const;
   void estimate_block(std::size_t b);

@@ -89,8 +89,7 @@ static_assert(1 << kMostLog == kMostSamples);
 /// eighths in each pixel.
 inline constexpr int kFirstLog = 3;
 static_assert(1 << kFirstLog == kLeastMost);
-/// Times that a round doubles the samples of a block at most: consecutive samples of a pixel share
-/// packets.
+/// Times that a round doubles a block at most: consecutive samples of a pixel share packets.
 inline constexpr int kMostDoublings = 3;
 
 /// Results of checks of a picture's error: sums over the blocks that checks doubled, each times the

@@ -1,5 +1,4 @@
-// What the next round of a refined picture doubles: blocks that gain most, or blocks drawn for a
-// check.
+// What the next round of a picture doubles: blocks that gain most, or that a check draws.
 #include <algorithm>
 #include <bit>
 #include <cmath>

@@ -65,10 +65,9 @@ int doublings(const Refinement& r, std::size_t block);
 /// Samples that it gives each pixel of a block.
 std::uint32_t new_count(const Refinement& r, std::size_t block);
 
-/// Projects spheres, cones and small meshes that look thinner than a pixel into a picture, as the
-/// eye sees them straight and in flat mirrors, whatever stands before them: samples may have missed
-/// them. Their pixels get boxes that later samples favour; until then r.missed holds the variances
-/// that the objects may add to blocks.
+/// Projects spheres, cones and small meshes that look thinner than a pixel into a picture, straight
+/// and by flat mirrors, whatever stands before them. Their pixels get boxes that later samples
+/// favour; until then r.missed holds the variances that they may add to blocks.
 void mark_small_objects(const World::Impl& world, const FrameView& frame, Refinement& r);
 
 /// Cuts the wanted blocks into chunks. After an interruption between two chunks, the rest of the

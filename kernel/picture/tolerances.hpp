@@ -20,6 +20,10 @@ inline constexpr float kLeastRatio = .1f, kMostRatio = .6f;
 /// Differing pixels a block must hold for its estimate to stand alone. An edge crosses four or so;
 /// where fewer differ, rare hits may be what makes them, and blocks around tell as well.
 inline constexpr float kMinHits = 3;
+/// Blocks on each side that tell how often samples hit, and where these hold fewer hits than tell a
+/// variance to a quarter.
+inline constexpr int kNear = 1, kFar = 4;
+inline constexpr float kEnoughHits = 16;
 /// Share of samples that hit, up to which hits are rare.
 inline constexpr float kRareHits = .01f;
 /// Blocks lie on one surface as far as samples tell where their means differ by no more standard
@@ -50,8 +54,7 @@ inline constexpr double kBoundedLow = 1.15;
 inline constexpr double kLeastErrorRatio = .7, kMaxErrorRatio = 16;
 /// Most error checks of a picture.
 inline constexpr int kMaxChecks = 16;
-/// A check that finds so many times the error asked for is repeated, up to so many in all (a
-/// choice).
+/// A check that finds so many times the error asked for is repeated, up to so many in all.
 inline constexpr double kSurprise = 1.5;
 inline constexpr int kMostRepeats = 3;
 /// Most of a picture that a check samples again.
