@@ -113,7 +113,7 @@ TEST_F(Program, SpendsSamplesByErrorAndSaysSo) {
   const Json error = Json::parse(folder_.read("s.json"))["error"];
   EXPECT_EQ(error["asked"], .02);
   EXPECT_LE(error["rmse_bound"], .02);
-  EXPECT_GT(error["audits"], 0);
+  EXPECT_GT(error["checks"], 0);
   const Image samples = read_image(folder_.file("n.pfm")),
               errors = read_image(folder_.file("e.pfm"));
   double all = 0, squares = 0;
