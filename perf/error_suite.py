@@ -331,7 +331,7 @@ def main():
                 f"{ROOT.parent}/", "../")
         write_csv(runs, DOCS / "error-suite.csv")
         record("error-suite")
-        draw_error_charts(runs, DOCS / "images/error-suite.svg")
+        draw_error_charts(hostile.runs + ordinary.runs, DOCS / "images/error-suite.svg")
         put_section(DOCS / "sampling.md", "perf/error_suite.py", text)
     sys.exit(not verdict(hostile, ordinary))
 
