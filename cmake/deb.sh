@@ -1,15 +1,19 @@
 #!/bin/sh
-# deb.sh FOLDER: the packages that debian/ describes, of a copy of the sources in FOLDER, and what
-# lintian says of them. Fails on its errors and warnings.
+# deb.sh FOLDER: the packages that debian/ describes and their source package, in FOLDER, of a copy
+# of the sources as they are. Fails on any tag of lintian. `./run test` runs the tests.
 set -eu
 cd "$(dirname "$0")/.."
 mkdir -p "$1"
-rm -rf "$1"/*.deb "$1"/*.changes "$1"/*.buildinfo "$1/grelha"
-mkdir "$1/grelha"
-tar -c --exclude=./build --exclude=./.git --exclude=__pycache__ . | tar -x -C "$1/grelha"
-cd "$1/grelha"
-dpkg-buildpackage -b -us -uc
+version=$(sed -n '1s/^grelha (\([^-]*\)-.*/\1/p' debian/changelog)
+rm -rf "$1"/grelha_* "$1"/*.deb "$1/grelha-$version"
+mkdir "$1/grelha-$version"
+tar -c --exclude=./build --exclude=./.git --exclude=__pycache__ . | tar -x -C "$1/grelha-$version"
+cd "$1"
+tar -czf "grelha_$version.orig.tar.gz" "--exclude=grelha-$version/debian" --sort=name \
+  "grelha-$version"
+cd "grelha-$version"
+DEB_BUILD_OPTIONS="nocheck ${DEB_BUILD_OPTIONS-}" dpkg-buildpackage -Pnocheck -us -uc
 cd ..
-rm -rf grelha
-lintian --allow-root --fail-on error,warning ./*.changes
+rm -rf "grelha-$version"
+lintian --allow-root -i -I --pedantic --fail-on error,warning,info,pedantic ./*.changes
 ls "$PWD"/*.deb

@@ -1,7 +1,7 @@
 #!/bin/sh
 # release.sh FOLDER: the files of a release and their checksums, in FOLDER: sources, packages of
-# Debian, and for pip an sdist and a wheel without pictures, which needs no library but those of
-# the compiler. HEAD must be tagged as the version, without changes after it.
+# Debian and their source package, and for pip an sdist and a wheel without pictures, which needs no
+# library but those of the compiler. HEAD must be tagged as the version, without changes after it.
 set -eu
 cd "$(dirname "$0")/.."
 out=$1
@@ -30,5 +30,5 @@ else
 fi
 cd "$out"
 rm -f ./*.buildinfo ./*.changes
-sha256sum ./*.deb ./*.tar.gz python/* >SHA256SUMS
+sha256sum ./*.deb ./*.dsc ./*.tar.* python/* >SHA256SUMS
 ls "$PWD"
