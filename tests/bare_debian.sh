@@ -3,8 +3,9 @@
 # has nothing else: bookworm (12), unless RELEASE says trixie (13). As root, with debootstrap; not a
 # test of ctest's: it downloads some 200 MB.
 #   commands   both commands of the README in a clone, and the CPU seconds of each step
-#   packages   installs those of build/packages; runs the program, man page, README, recipes, and
-#              the examples against the library; pictures are left in FOLDER/tmp
+#   packages   installs those of build/packages; runs the program, man page, README, recipes,
+#              examples against the library and the tests of debian/tests; pictures are left in
+#              FOLDER/tmp
 #   arm64      packages for ARM, cross-built, and unpacked where qemu-user runs program and module
 #   wheel      pip install ., also without pictures, with Debian's packages for building; what it is
 #              linked with
@@ -17,7 +18,11 @@ mount -t proc proc "$root/proc"
 trap 'umount "$root/proc"' EXIT
 rm -rf "$root/tmp/grelha" "$root/tmp/packages"
 case $what in
-  packages) cp -r "$project/build/packages" "$root/tmp/packages" ;;
+  packages)
+    cp -r "$project/build/packages" "$root/tmp/packages"
+    mkdir "$root/tmp/grelha"  # tests of debian/tests start where the sources are
+    cp -r "$project/debian" "$project/examples" "$root/tmp/grelha"
+    ;;
   *) git clone -q --depth 1 "file://$project" "$root/tmp/grelha" ;;
 esac
 {
@@ -65,6 +70,12 @@ cmake --build example/build
 example/build/embed
 cc example/first_hit.c $(pkg-config --cflags --libs grelha-c) -o first_hit
 ./first_hit
+for test in $(sed -n 's/^Tests: //p' grelha/debian/tests/control); do
+  AUTOPKGTEST_TMP=$(mktemp -d)
+  export AUTOPKGTEST_TMP
+  (cd grelha && "debian/tests/$test") || { echo "debian/tests/$test failed"; exit 1; }
+  echo "debian/tests/$test passed"
+done
 grep -ohE '\]\([^):# ]+\.[a-z]+' $pages/*.md | cut -c3- | sort -u | while read -r link; do
   [ -e "$pages/$link" ] || { echo "README.md links to $link"; exit 1; }
 done
