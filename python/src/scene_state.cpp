@@ -142,9 +142,13 @@ FileScene FileScene::of_state(const py::tuple& state) {
   scene.samples_ = samples;
   if (scene.samples_ < 1 || scene.samples_ > kMostSamples)
     throw py::value_error("state: expected 1 sample or more");
-  for (const py::handle solid : state[6].cast<py::list>()) {
+  if (!py::isinstance<py::list>(state[6]))
+    throw py::value_error("state: expected a list of solids");
+  for (const py::handle solid : state[6]) {
     const auto [name, first, count] =
         solid.cast<std::tuple<py::bytes, std::uint32_t, std::uint32_t>>();
+    if (std::uint64_t{first} + count > parts.scene.geometry.triangles.size())
+      throw py::value_error("state: expected solids of faces that are there");
     scene.solids_.push_back({std::string(name), first, count});
   }
   scene.model_ = built(std::move(parts), 0);
