@@ -89,10 +89,7 @@ def programs():
 
 def figures():
     calls = ratios("ratio_of_calls")
-    profile = {r["scene"]: {k: float(v) for k, v in r.items() if k != "scene"}
-               for r in rows_of("frame-profile")}
     told = {"povray": span(povray_ratios().values()),
-            "targets": doc_tables.targets(povray_ratios(), profile),
             "ladder": doc_tables.ladder(rows_of("ladder")),
             "build": doc_tables.build(rows_of("build")),
             "trace": doc_tables.trace(rows_of("trace")),

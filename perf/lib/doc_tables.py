@@ -85,26 +85,3 @@ def distances(rows):
     """From the least to the largest mean over Embree's."""
     means = sorted(over(rows, p, "array", "Embree") for p in {r["points"] for r in rows})
     return f"{means[0]} to {means[-1]}"
-
-
-def targets(ratio, profile):
-    """Targets of whole pictures beside what is measured, in bold where they are missed.
-
-    ratio: POV-Ray's time over Grelha's, by scene and case. profile: frame-profile.csv, by scene.
-    """
-    scenes = ["balls 4", "mount 8", "Distant"]
-    of = [profile[s] for s in scenes]
-    rows = [(what, target, [ratio[s, case] for s in scenes], True, 1) for what, target, case in (
-        ("POV-Ray's time over Grelha's, plain", 8, "plain"),
-        ("the same, area light", 20, "area light 4 x 4"),
-        ("the same, lens", 20, "lens, 32 samples"))]
-    rows += [
-        ("a picture over its rays alone", 2,
-         [p["render_cpu"] / p["trace_alone_cpu"] for p in of], False, 1),
-        ("load and write over render", 1, [(p["load"] + p["write"]) / p["clock"] for p in of],
-         False, 2),
-        ("two threads over one", 1.9, [p["render"] / p["render_two_threads"] for p in of], True, 2)]
-    return table(["", "target", *scenes], [
-        [what, str(target), *(f"{v:.{digits}f}" if (v >= target) == more else f"**{v:.{digits}f}**"
-                              for v in values)]
-        for what, target, values, more, digits in rows])
