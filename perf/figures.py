@@ -58,6 +58,13 @@ def ratios(column):
     return [float(r[column]) for r in rows_of("trace") if r[column]]
 
 
+def bytes_of(spheres):
+    """Bytes of a World a primitive, from least to most."""
+    found = [float(r["grelha_bytes"]) for r in rows_of("build")
+             if r["scene"].startswith("balls") == spheres]
+    return f"{min(found):.0f} to {max(found):.0f}"
+
+
 def lost():
     """Rays that were sent and lost, by tracer and where they aim."""
     rows = rows_of("lost")
@@ -95,6 +102,7 @@ def figures():
             "trace": doc_tables.trace(rows_of("trace")),
             "distance": doc_tables.distance(rows_of("distance")),
             "distances": doc_tables.distances(rows_of("distance")),
+            "bytes-of-spheres": bytes_of(True), "bytes-of-triangles": bytes_of(False),
             "builds": span([float(r["grelha_1_least_ms"]) / float(r["embree_medium_1_least_ms"])
                             for r in rows_of("build")]),
             "embree": span([1 / r for r in ratios("ratio")]), "calls": span(calls),
